@@ -9,12 +9,12 @@ from functools import partial
 import torch
 from measuring import least_cpu_seconds, least_seconds, report, results_folder
 
+from mmweaver.compression.scatterer_field import ScattererField
 from mmweaver.compression.scatterers.fit_window import FitWindow
 from mmweaver.compression.scatterers.layers import Layers
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid
 from mmweaver.signal.point_response import Points
-from studies.fields.scatterer_field import ScattererField
 
 NUM_FRAMES = 20
 REPEATS = 200  # so many that some run finds the machine free

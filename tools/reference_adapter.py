@@ -23,9 +23,11 @@ from mmweaver import read_radar_npz as read_radar_npz
 from mmweaver.compression.lossless_file import LosslessFile, compress_bin
 from mmweaver.compression.mmw_codec import compress_cube, errors_db, values_of_bytes
 from mmweaver.compression.mmw_codec import read_cube as read_mmw
+from mmweaver.models.methods import Learned, Physics
 from mmweaver.motion.language.plan import MotionPlan, Step
 from mmweaver.motion.language.sentence import parse
 from mmweaver.motion.language.timing import natural_s
+from mmweaver.propagation.static_paths import Propagation
 
 RADHAR_LABELS = ("boxing", "jack", "jump", "squats", "walk")
 # name of a projected field -> name of today's; what only schedules, quotes or personalizes a step is left out
@@ -111,6 +113,9 @@ def kitml_sentences(data: Path) -> list[str]:
 # signals ------------------------------------------------------------------------------------------------------------
 @cache
 def weaver(method: str, radar: str = "awr1843", **options: Any) -> Weaver:
+    if options.pop("bounces", 2) == 1 and options.pop("clutter", "") == "resolved":
+        propagation = Propagation(bounces=1, clutter=False)
+        return Weaver(Physics(propagation) if method == "physics" else Learned(None, propagation), radar, **options)
     return Weaver(method, radar, **options)
 
 

@@ -10,11 +10,11 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from mmweaver.compression.scatterer_field import ScattererField
+from mmweaver.compression.scatterers.fitting import FitRecipe as ScattererRecipe
+from mmweaver.compression.signal_field import SignalField
 from mmweaver.core.records import RadarCube
-from studies.fields.budgeted_fit import BudgetedRecipe as ScattererRecipe
 from studies.fields.field_signals import RECORDED, SIGNALS, StudySignal
-from studies.fields.scatterer_field import ScattererField
-from studies.fields.signal_field import SignalField
 from studies.manifest import StudyRun
 from studies.paper.single_signal import RECIPES, fit
 from studies.result_rows import complete_rows, in_order, kept_rows

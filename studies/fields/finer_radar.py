@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from mmweaver.compression.phase_centring import centred, centring_phasor
+from mmweaver.compression.signal_field import antenna_at, coordinates_on
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube
 from mmweaver.core.shapes import CubeValues
 from mmweaver.signal.windows import hann
-from studies.fields.phase_centring import centred, centring_phasor
-from studies.fields.sampling import antenna_at, coordinates_on
 
 NO_LIMITS_HZ = (1e9, 1e12)  # a finer radar exists in simulation alone
 

@@ -25,13 +25,16 @@ from typing import Any
 
 import numpy as np
 
+from mmweaver.compression.phase_centring import centred, centring_phasor
+from mmweaver.compression.scatterer_field import ScattererField
+from mmweaver.compression.scatterers.fitting import FitRecipe as ScattererRecipe
+from mmweaver.compression.signal_field import SignalField, finer_grid, sampled_grid
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube
 from mmweaver.core.shapes import CubeValues, RangeDopplerMask
 from mmweaver.propagation.receiver import IDEAL
 from mmweaver.signal.cube import adc_from_cube, radar_cube
-from studies.fields.budgeted_fit import BudgetedRecipe as ScattererRecipe
 from studies.fields.field_fidelity import PAPER_VALUES
 from studies.fields.field_signals import pose_of, sample_scene, simulator_of, without_room
 from studies.fields.finer_radar import (
@@ -43,10 +46,6 @@ from studies.fields.finer_radar import (
     spectrum_on,
     starting_later,
 )
-from studies.fields.phase_centring import centred, centring_phasor
-from studies.fields.sampling import finer_grid, sampled_grid
-from studies.fields.scatterer_field import ScattererField
-from studies.fields.signal_field import SignalField
 from studies.manifest import StudyRun
 from studies.paper.single_signal import RECIPES, fit
 from studies.result_rows import complete_rows

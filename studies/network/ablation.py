@@ -128,8 +128,11 @@ def trained(variant: AblationVariant, material: AblationMaterial, out: Path, rec
     learner = _PartOfLoss(network, rooms[0].room.config, excluded=variant.terms_without)
     if recipe.steps > 0:
         trainer = Trainer(
-            learner, recipe, out, train=batch_sampler(rooms, recipe, recipe.seed, recipe.mirror),
-            validation=batch_sampler(unseen, recipe, VALIDATION_SEED + recipe.seed),
+            learner, recipe, out,
+            batches=(
+                batch_sampler(rooms, recipe, recipe.seed, recipe.mirror),
+                batch_sampler(unseen, recipe, VALIDATION_SEED + recipe.seed),
+            ),
         )  # fmt: skip
         trainer.run()
     learner.eval()

@@ -60,7 +60,7 @@ def tuned(weights: Path, rooms: list[StoredRoom], shots: int, out: Path, seed: i
     torch.manual_seed(seed)
     learner = NetworkLearner(network.train(), few[0].room.config)
     draw = batch_sampler(few, RECIPE, seed, True)
-    Trainer(learner, RECIPE, out, train=draw, validation=draw).run()
+    Trainer(learner, RECIPE, out, batches=(draw, draw)).run()
     return network.eval()
 
 

@@ -20,12 +20,11 @@ import numpy as np
 import torch
 from jaxtyping import Complex, Float
 
+from mmweaver.compression.phase_centring import centring_phasor, centring_phasor_at
+from mmweaver.compression.signal_field import CHUNK_POINTS, Coordinates, SignalField, coordinates_on
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid
 from mmweaver.core.shapes import CubeValues
-from studies.fields.phase_centring import centring_phasor, centring_phasor_at
-from studies.fields.sampling import Coordinates, coordinates_on
-from studies.fields.signal_field import SignalField
 from studies.paper.positional_encoding import (
     OCTAVES,
     Frequencies,
@@ -34,7 +33,6 @@ from studies.paper.positional_encoding import (
     positional_encoding,
 )
 
-CHUNK_POINTS = 1 << 18  # points of a grid that are sampled together
 HIDDEN_WIDTH = 32
 NUM_HIDDEN = 4
 NUM_OUTPUTS = 2  # I, Q
@@ -358,16 +356,6 @@ class BaseInrField(SignalField):
         if self.is_centred:
             out *= centring_phasor_at(self.config, self.grid, coordinates).conj()
         return out
-
-    def on_grid(self, grid: CubeGrid) -> CubeValues:
-        axes = coordinates_on(self.grid, grid)
-        values = np.empty(grid.shape, np.complex64)
-        flat = values.reshape(-1)
-        for first in range(0, flat.size, CHUNK_POINTS):
-            index = np.unravel_index(np.arange(first, min(first + CHUNK_POINTS, flat.size)), grid.shape)
-            points = np.stack([axis[at] for axis, at in zip(axes, index, strict=True)], axis=1)
-            flat[first : first + CHUNK_POINTS] = self.sample(points)
-        return values
 
 
 def _complex(iq: torch.Tensor) -> np.ndarray:

@@ -118,7 +118,7 @@ def train_paper(
         network.load_state_dict(start)
     trainer = Trainer(
         PaperLearner(network, perceiver, config, shown=lambda: unseen[:MAX_ROWS]), recipe, out, compute=compute,
-        train=_drawing(rooms, recipe, recipe.seed), validation=_drawing(unseen, recipe, VALIDATION_SEED + recipe.seed),
+        batches=(_drawing(rooms, recipe, recipe.seed), _drawing(unseen, recipe, VALIDATION_SEED + recipe.seed)),
         is_tuning=start is not None, **options,
     )  # fmt: skip
     trainer.run(listener)

@@ -25,7 +25,7 @@ from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
 from mmweaver.models.precision import full_precision
 from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.propagation.mean_scatterers import CellEchoes, MeanEchoes
+from mmweaver.propagation.mean_scatterers import MeanEchoes
 from studies.paper.pca_whitening import PcaWhitening
 from studies.paper.power_anchors import (
     BODY_VALUES,
@@ -54,6 +54,13 @@ LARGEST_LOG = 6.0
 # what fields say before training: levels and slopes of the last values, read off eight training rooms
 ROOM_LOG, ROOM_SLOPES = -12.5, {0: 1.6, 1: 0.8, 3: 1.2, 6: 1.6}
 PERSON_LOG, PERSON_SLOPES = -7.3, {**dict.fromkeys(range(HEADS), 0.7), **dict.fromkeys(range(HEADS, 2 * HEADS), 0.3)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class CellEchoes(MeanEchoes):
+    """Echoes that stand for resolution cells; a cell has one number in all frames, and so one phase."""
+
+    cell: Tensor  # (..., echo) int64
 
 
 @dataclass(frozen=True, kw_only=True)

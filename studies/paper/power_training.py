@@ -69,8 +69,9 @@ def train_power(
         network.load_state_dict(start)
     learner = NetworkLearner(network, rooms[0].room.config, shown=lambda: validation(0, (0, 1)))
     trainer = Trainer(
-        learner, recipe, out, compute=compute, train=_sampler(rooms, recipe, recipe.seed, recipe.mirror),
-        validation=validation, is_tuning=start is not None, **options,
+        learner, recipe, out, compute=compute,
+        batches=(_sampler(rooms, recipe, recipe.seed, recipe.mirror), validation),
+        is_tuning=start is not None, **options,
     )  # fmt: skip
     trainer.run(listener)
     return trainer

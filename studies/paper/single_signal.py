@@ -9,12 +9,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 import torch
 
+from mmweaver.compression.phase_centring import centred
+from mmweaver.compression.signal_field import SignalField
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
 from mmweaver.core.registry import Registry
 from mmweaver.core.seeding import stream
-from studies.fields.phase_centring import centred
-from studies.fields.signal_field import SignalField
 from studies.paper.paper_inr import (
     ACTIVATIONS,
     BaseInrField,

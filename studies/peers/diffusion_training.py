@@ -155,7 +155,7 @@ def train_diffusion(data: Path, out: Path, recipe: DiffusionRecipe) -> Path:
         partial(_batch, some, unit, recipe.seed + extra, recipe.batch_size)
         for some, extra in ((train, 0), (unseen, 10_000))
     ]
-    trainer = Trainer(DiffusionLearner(network), recipe, out, train=samplers[0], validation=samplers[1])
+    trainer = Trainer(DiffusionLearner(network), recipe, out, batches=(samplers[0], samplers[1]))
     trainer.run(
         lambda progress: None if progress.validation is None else print(progress.step, progress.validation, flush=True)
     )

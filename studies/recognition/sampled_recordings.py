@@ -21,17 +21,17 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from mmweaver.compression.scatterer_field import ScattererField
+from mmweaver.compression.scatterers.fitting import FitRecipe
+from mmweaver.compression.signal_field import finer_grid, sampled_grid
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.datasets.dataset_store import read_plan
 from mmweaver.datasets.room_sequences import LabelledData, read_labelled
 from mmweaver.models.activity_network import ACTIVITY_NAMES
 from mmweaver.signal.cube import adc_from_cube
 from mmweaver.training.activity_training import TRAIN_SPLITS, augmented, compute_log_maps
-from studies.fields.budgeted_fit import BudgetedRecipe
 from studies.fields.field_fidelity import PAPER_VALUES
 from studies.fields.finer_radar import interpolated, spectrum_on
-from studies.fields.sampling import finer_grid, sampled_grid
-from studies.fields.scatterer_field import ScattererField
 from studies.manifest import StudyRun
 from studies.network.activity_gain import few_of
 from studies.network.learned_scores import interval
@@ -46,7 +46,7 @@ Sampler = Callable[[CubeGrid], np.ndarray]
 
 
 def _scatterers(cube: RadarCube) -> Sampler:
-    recipe = BudgetedRecipe(num_points=PAPER_VALUES, num_values=PAPER_VALUES, with_static=False)
+    recipe = FitRecipe(num_points=PAPER_VALUES, num_values=PAPER_VALUES, with_static=False)
     return ScattererField.fit(cube, recipe).on_grid
 
 

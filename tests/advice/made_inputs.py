@@ -28,7 +28,7 @@ from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.training.captures import read_capture
 from mmweaver.weaver.front_door import Weaver, compose_request
 from mmweaver.weaver.generation import Generation, Room
-from mmweaver.weaver.parsed_request import ParsedRequest, Request
+from mmweaver.weaver.parsed_request import ParsedRequest
 from tests.captures import CFG
 from tests.cli.test_motion_options import waving
 from tests.io.test_ti_cfg import BEST_RANGE, SUB_FRAMES
@@ -201,7 +201,7 @@ def _trained(asked: train.Options, *_: Any) -> dict[str, Any]:
     return {"weights": "out", "steps": 0, "validation_loss": 0.0}
 
 
-def _composed(request: Request, of_room: Room) -> tuple[Motion, ...]:
+def _composed(request: ParsedRequest, of_room: Room) -> tuple[Motion, ...]:
     """Motions of equal requests in equal rooms are composed once."""
     if request.motion is not None:
         return compose_request(request, of_room.scene)
@@ -212,7 +212,13 @@ def _composed(request: Request, of_room: Room) -> tuple[Motion, ...]:
 
 
 def _signal(weaver: Weaver, request: ParsedRequest, of_room: Room, people: Any = None) -> Generation:
-    people = compose_request(request, of_room.scene) if people is None else people
-    if "signal" not in _made:
-        _made["signal"] = _carry_out(weaver, replace(request, keep_adc=True), of_room, people)
-    return _made["signal"]
+    people = _composed(request, of_room) if people is None else people
+    made = request.config.name, len(request.radar_poses)
+    made = made if made in _RADARS else ("awr1843", 0)
+    if made not in _made:
+        _made[made] = _carry_out(weaver, replace(request, keep_adc=True), of_room, people)
+    if request.radar_poses:
+        return _made[made]
+    board = weaver.board_of(request, of_room)[0].meta()
+    meta = _made[made].meta | {"text": request.text or people[0].plan.text, "board": board} | request.meta()
+    return replace(_made[made], meta=meta)

@@ -117,9 +117,12 @@ ROWS = (
         before=_fewer_transmitters,
     ),
     Row(
-        "try --antennas □, or another --radar",
+        "try --radar-set antennas=□, or another --radar",
         OTHER_RADAR,
-        (add("--antennas"), instead("or another --radar", "wrong.json", "radar.json")),
+        (
+            plus("--radar-set antennas=", "--radar-set", "antennas=aop"),
+            instead("or another --radar", "wrong.json", "radar.json"),
+        ),
         before=_another_board,
     ),
     Row(
@@ -217,7 +220,7 @@ ROWS = (
         (plus("--radar-set subframe=N", "--radar-set", "subframe=0"),),
     ),
     Row(
-        "it has one plain frame (frameCfg)",
+        "it has one plain frame and no sub-frames",
         "radar {best_range} --radar-set subframe=0",
         (drop("--radar-set"),),
     ),
@@ -303,7 +306,7 @@ ROWS = (
         (instead("a cube has --quality", "out.mmwl --lossless", "out.mmw --quality 30"),),
     ),
     Row(
-        "is no .mmw file; make one with",
+        "mmweaver compress CAPTURE.npz --quality 30 -o OUT.mmw",
         "info notes.mmw",
         (
             edit(

@@ -124,7 +124,7 @@ ROWS = (
         (plus("HumanML3D and MotionGPT: 20", "--motion-set", "fps=20"),),
     ),
     Row(
-        "frames a second, not",
+        "frames per second, not",
         f"{ONE} --motion {{motion}} --motion-set fps=0",
         (plus("--motion-set fps=", "--motion-set", "fps=30"),),
     ),

@@ -7,14 +7,14 @@ import numpy as np
 from PIL import Image
 
 from mmweaver.core.records import CameraIntrinsics
-from tests.advice.harness import Row, add, both, drop, instead, plus
+from tests.advice.harness import Row, add, instead
 from tests.captures import write_camera
 from tests.scene.test_scan_folders import scannet
 
 SHORT = "--text 'a person waves' --frames 1 --no-pictures --out out"
 PHOTO = f"generate --rgb {{rgb}} --depth {{depth}} --camera {{camera}} {SHORT}"
 ESTIMATED = f"generate --rgb {{rgb}} --camera {{camera}} {SHORT}"
-CAPTURE = f"generate --capture capture {SHORT}"
+CAPTURE = f"generate --room capture {SHORT}"
 LENS = CameraIntrinsics(fx=60.0, fy=60.0, cx=31.5, cy=23.5, width=64, height=48)
 
 
@@ -48,51 +48,27 @@ ROWS = tuple(
     Row(text, command, tries, before, reads_photo=True)
     for text, command, tries, before in (
         (
-            "□ holds no RealSense",
-            f"generate --capture {{nothing}} {SHORT}",
-            (
-                both(
-                    instead("instead", "--capture {nothing}"),
-                    plus("--rgb and --depth", "--rgb", "{rgb}", "--depth", "{depth}"),
-                ),
-            ),
-            lambda: None,
-        ),
-        (
             "□: photo □ has no depth at all; choose another (--photo)",
             CAPTURE,
             (add("--photo", "1"),),
             lambda: _capture((0.0, 3.0)),
         ),
         (
-            "photo □ of the scan has no pose",
-            f"generate --capture scan --further-photos auto {SHORT}",
+            "□: photo □ has no pose, by which",
+            f"generate --room scan --extra-views auto {SHORT}",
             (add("--photo", "1"),),
             _scan_without_first_pose,
         ),
         ("is it whole? or give the picture", CAPTURE, (add("--rgb", "own.png"),), _capture_without_video),
         (
-            "--classes already gives the classes",
-            f"{PHOTO} --classes classes.png --segmenter builtin --sam edges",
-            (drop("--segmenter", "--sam"),),
-            _classes,
-        ),
-        ("--sam finds edges, not classes", f"{PHOTO} --sam edges", (add("--segmenter", "builtin"),), lambda: None),
-        (
-            "--depth-model □ takes no measured depth",
-            f"{PHOTO} --depth-model metric",
-            (drop("--depth"), drop("--depth-model"), instead("or give a Prompt Depth Anything", "metric", "prompted")),
-            lambda: None,
-        ),
-        (
-            "--depth-model □ gives no depth for this picture",
-            f"{ESTIMATED} --depth-model blind",
+            "--depth □ gives no depth for this picture",
+            f"{ESTIMATED} --depth blind",
             (instead("try another model", "blind", "metric"),),
             lambda: None,
         ),
         (
-            "--depth-model □ cannot process this picture",
-            f"{ESTIMATED} --depth-model broken",
+            "--depth □ cannot process this picture",
+            f"{ESTIMATED} --depth broken",
             (instead("try another model", "broken", "metric"),),
             lambda: None,
         ),

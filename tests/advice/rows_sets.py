@@ -4,11 +4,13 @@ import json
 import shutil
 from pathlib import Path
 
+import torch
 from PIL import Image
 
 from mmweaver.cli.main import main
+from mmweaver.core.tensor_files import write_tensors
 from mmweaver.io.dca1000 import write_bin
-from tests.advice.harness import Row, add, drop, instead
+from tests.advice.harness import Row, add, drop, edit, instead, plus
 from tests.advice.made_inputs import SAMPLE
 from tests.recordings.test_plausibility import RADAR, room
 
@@ -78,10 +80,32 @@ ROWS = (
             instead("add it to one", "{jumping}", "{activities}"),
         ),
     ),
-    # training: the options alone
+    # training: the options and what is read alone
+    Row(
+        "□ has no photo of its room",
+        "train weaver --recordings capture --weights {weights} --out out",
+        (
+            edit("put rgb.png, depth.png (or depth.npy) and camera.json into it", lambda: _photo("capture")),
+            edit("or into the folder above", lambda: _photo(".")),
+            plus("give --rgb and --depth", "--rgb", "{rgb}", "--depth", "{depth}", "--camera", "{camera}"),
+        ),
+        before=_capture,
+    ),
+    Row(
+        "has changed since □ was written",
+        "train weaver --recordings capture --weights {weights} --out out",
+        (plus("give --rgb and --depth", "--rgb", "{rgb}", "--depth", "{depth}", "--camera", "{camera}"),),
+        before=_capture_of_another_photo,
+    ),
+    Row(
+        "is not a weight file of mmweaver; give one that",
+        "train weaver --recordings {walk} --weights foreign.safetensors --out out",
+        (instead("give one that mmweaver train wrote", "foreign.safetensors", "{weights}"),),
+        before=lambda: write_tensors(Path("foreign.safetensors"), {"a": torch.zeros(1)}, {}),
+    ),
     Row(
         "--rgb and --depth belong together",
-        "train weaver --recordings {walk} --weights builtin --rgb {rgb} --out out",
+        "train weaver --recordings {walk} --weights {weights} --rgb {rgb} --out out",
         (add("--depth", "{depth}"),),
     ),
     Row(

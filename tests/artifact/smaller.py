@@ -6,7 +6,7 @@ from tests.artifact.readme import Recipe
 SMALLER = {
     "--rooms living_room,office --layouts 1 --sequences 4": "--rooms office --layouts 1 --sequences 1 --frames 3",
     "--activities activities.toml --per-class 10": "--activities activities.toml --per-class 2 --seconds 1",
-    "recognise train TASK.toml --quick": "recognise train TASK.toml --sequences 2",
+    "recognise train TASK.toml --sequences 8": "recognise train TASK.toml --sequences 2",
     "--out walk/ --seed 0": "--out walk/ --seed 0 --no-pictures --frames 5",
     "--out board/": "--out board/ --no-pictures",
     "--out left/": "--out left/ --no-pictures --frames 5",

@@ -52,7 +52,7 @@ def test_options_become_the_words_that_make_them():
         (["bench"], ["'generate'"]),
         (["generate", "--demo", "--sedd", "3"], ["--sedd", "--seed?", "mmweaver generate --help"]),
         (["points", "x.dat"], ["out"]),
-        (["generate", "--demo", "--bounces", "1"], ["--bounces", "Propagation(bounces=1)"]),
+        (["generate", "--demo", "--sam", "sam"], ["--sam", "sam=NAME"]),
     ],
 )
 def test_a_wrong_word_is_said_with_the_nearest(argv: list[str], says: list[str]):

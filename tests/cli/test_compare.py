@@ -18,8 +18,8 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, str]:
 def test_numbers_and_files(results: tuple[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     assert main(["compare", *results, "--out", str(tmp_path / "out")]) == 0
     printed = capsys.readouterr().out
-    assert "best plane wave in a strong cell" in printed
-    assert "cannot be seen, the range window is cut" in printed
+    assert "plane wave" in printed
+    assert "range window" in printed
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
         "comparison.html", "comparison.json", "comparison.png",
     ]  # fmt: skip

@@ -12,7 +12,12 @@ from mmweaver.cli.arguments import parsed, request_toml
 from mmweaver.cli.main import main, parser_of
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
+from mmweaver.io.npz_files import read_radar_npz
+from mmweaver.models.methods import Learned, Physics
+from mmweaver.propagation.static_paths import Propagation
+from mmweaver.weaver.front_door import Weaver
 
+KINDS: Any = {"physics": Physics, "weaver": Learned}
 REPEATED = ("radar.npz", "pose.npz", "points.npz", "radar.json", "request.toml")
 
 
@@ -92,11 +97,119 @@ def test_a_file_of_0_2_is_read_and_its_old_names_are_warned_of_once(tmp_path: Pa
     warned = capsys.readouterr().err.splitlines()
     assert len(warned) == 5
     assert any("--further-photos" in line and "--extra-views" in line for line in warned)
-    (tmp_path / "run.toml").write_text('draws = "free"\nhtml = "walk.html"\nseed = 4\n')
-    assert options("generate", "--config", str(tmp_path / "run.toml")).seed == 4
-    (tmp_path / "run.toml").write_text("bounces = 1\n")
-    with pytest.raises(InputError, match="bounces"):
+
+
+# every option of 0.2 that generate has no longer, as its request.toml named it -> a field of today's, and its value
+OLD_OPTIONS = {
+    'empty-room = "empty"': ("background", "{0}/empty"),
+    'depth-model = "auto"': ("depth", "auto"),
+    'segmenter = "builtin"': ("classes", "builtin"),
+    'capture = "scan"': ("room", "{0}/scan"),
+    'further-photos = "60,120"': ("extra_views", "60,120"),
+    'views = "views.json"': ("room", "{0}/views.json"),
+    'mesh = "room.glb"': ("room", "{0}/room.glb"),
+    "mesh-eye = [0.5, 1.0, 1.2]": ("mesh_set", ["eye=0.5,1.0,1.2"]),
+    "mesh-look = 90.0": ("mesh_set", ["look=90.0"]),
+    'mesh-unit = "cm"': ("mesh_set", ["unit=cm"]),
+    'mesh-up = "z"': ("mesh_set", ["up=z"]),
+    'mesh-materials = "names.json"': ("mesh_set", ["materials={0}/names.json"]),
+    "repeat = 3": ("per_class", 3),
+    "repeat = 1": ("per_class", None),
+    'draws = "matched"': (None, None),
+    'draws = "free"': (None, None),
+    "store = false": (None, None),
+    'motion-model-for = "all"': ("motion_set", ["for=all"]),
+    'motion-model-for = "unknown"': ("motion_set", None),
+    "motion-fps = 30.0": ("motion_set", ["fps=30.0"]),
+    'motion-unit = "cm"': ("motion_set", ["unit=cm"]),
+    'motion-up = "z"': ("motion_set", ["up=z"]),
+    "motion-start = 1.5": ("motion_set", ["start=1.5"]),
+    'clip = "walk"': ("motion_set", ["clip=walk"]),
+    'body-model = "names.json"': ("motion_set", ["body={0}/names.json"]),
+    "subframe = 1": ("radar_set", ["subframe=1"]),
+    'antennas = "isk"': ("radar_set", ["antennas=isk"]),
+    "lanes = 2": ("radar_set", ["lanes=2"]),
+    "bounces = 2": ("method_set", ["bounces=2"]),
+    'clutter = "all"': ("method_set", ["clutter=all"]),
+    'html = "walk.html"': (None, None),
+    "strict = true": (None, None),
+    'log-level = "info"': (None, None),
+}
+
+
+@pytest.mark.parametrize("line", OLD_OPTIONS)
+def test_an_old_option_of_a_file_is_read_and_warned_of_once(
+    line: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    (tmp_path / "names.json").write_text("{}")
+    (tmp_path / "run.toml").write_text(f'command = "generate"\ndemo = true\nradar = "awr1843"\n{line}\nseed = 4\n')
+    found = options("generate", "--config", str(tmp_path / "run.toml"))
+    assert (found.demo, found.radar, found.seed) == (True, "awr1843", 4)
+    name, value = OLD_OPTIONS[line]
+    if name is not None:
+        value = [str(one).format(tmp_path) for one in value] if isinstance(value, list) else value
+        value = value.format(tmp_path) if isinstance(value, str) else value
+        read = getattr(found, name)
+        assert (str(read) if isinstance(read, Path) else read) == value
+    (warned,) = capsys.readouterr().err.splitlines()
+    assert line.split(" =")[0] in warned
+
+
+@pytest.mark.parametrize(
+    ("line", "way"),
+    [
+        ('sam = "sam"', "sam=NAME"),
+        ("store = true", "--activities"),
+    ],
+)
+def test_an_old_option_that_is_gone_says_what_to_do(line: str, way: str, tmp_path: Path):
+    (tmp_path / "run.toml").write_text(f"{line}\n")
+    with pytest.raises(InputError, match=f"--{line.split()[0]} is gone") as raised:
         options("generate", "--config", str(tmp_path / "run.toml"))
+    assert way in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("command", "line", "name", "value"),
+    [
+        ("compress", "lossless = true", "quality", math.inf),
+        ("compress", 'effort = "full"', "preset", "full"),
+        ("compress", 'effort = "fast"', "preset", "fast"),
+        ("plot", "moving = true", "remove_static", "mean_chirp"),
+        ("recognise", "quick = true", "sequences", 8),
+        ("studio", 'recording = ["walk"]', "paths", ["{0}/walk"]),
+        ("train", 'precision = "auto"', None, None),
+        ("train", 'start = "base.safetensors"', "start", "base.safetensors"),
+        ("export", "list = true", None, None),
+        ("dataset", "each = 4", "per_class", 4),
+    ],
+)
+def test_old_options_of_other_commands(command: str, line: str, name: str | None, value: Any, tmp_path: Path):
+    (tmp_path / "run.toml").write_text(f"{line}\n")
+    needed = {"compress": ["a", "--out", "b"], "plot": ["a", "--out", "b"], "recognise": ["train", "t.toml"]}
+    needed |= {"train": ["weaver", "--out", "b"], "export": ["a", "--to", "npz", "--out", "b"]}
+    needed |= {"dataset": ["set", "--activities", "a.toml"]}
+    found = options(command, *needed.get(command, []), "--config", str(tmp_path / "run.toml"))
+    if name is not None:
+        read = getattr(found, name)
+        assert (list(map(str, read)) if isinstance(read, list) else read) == (
+            [one.format(tmp_path) for one in value] if isinstance(value, list) else value
+        )
+
+
+@pytest.mark.parametrize("method", ["physics", "weaver"])
+def test_paths_that_a_file_leaves_out_are_left_out(method: str, tmp_path: Path):
+    file = tmp_path / "run.toml"
+    file.write_text(
+        f'demo = true\ntext = ["a person stands"]\nframes = 2\nmethod = "{method}"\nno-pictures = true\n'
+        'board = "ideal"\nbounces = 1\nclutter = "resolved"\n'
+    )
+    assert main(["generate", "--config", str(file), "--quiet", "--out", str(tmp_path / "out")]) == 0
+    weaver = Weaver(KINDS[method](propagation=Propagation(bounces=1, clutter=False)))
+    same = weaver.generate(weaver.sample_room(), "a person stands", frames=2, board="ideal")
+    np.testing.assert_array_equal(read_radar_npz(tmp_path / "out" / "radar.npz").values, same.cube.values)
+    again = options("generate", "--config", str(tmp_path / "out" / "request.toml"))
+    assert again.method_set == ["bounces=1", "clutter=resolved"]
 
 
 @pytest.mark.parametrize(

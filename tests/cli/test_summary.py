@@ -1,6 +1,7 @@
 """What people and machines are told at the end."""
 
 import json
+import re
 
 import pytest
 
@@ -63,6 +64,6 @@ def test_usual_assumptions_are_for_verbose():
     short, long = ("\n".join(summary_lines("walk", meta, verbose=verbose)) for verbose in (False, True))
     assert "assumed: a stool" in short
     assert "level" not in short
-    assert "assumed: 1 more standard assumption (--verbose prints it)" in short
+    assert re.search(r"1 more .*--verbose", short)
     assert "assumed: the radar is level" in long
     assert "--verbose" not in long

@@ -55,7 +55,7 @@ def test_words_change_by_no_more_than_the_largest_error(recording: Path, tmp_pat
 def test_a_file_cut_short_holds_the_blocks_before(recording: Path, tmp_path: Path):
     compress_bin(recording, tmp_path / "a.mmwl", RADAR)
     data = (tmp_path / "a.mmwl").read_bytes()
-    starts = [start for start, _ in LosslessFile(tmp_path / "a.mmwl")._places]
+    starts = [place.start for place in LosslessFile(tmp_path / "a.mmwl").places]
     (tmp_path / "a.mmwl").write_bytes(data[: starts[2] + 20])
     file = LosslessFile(tmp_path / "a.mmwl")
     assert (file.num_frames, file.cut_short) == (4, 20)

@@ -7,6 +7,7 @@ import pytest
 from mmweaver.compression import optimiser
 from mmweaver.compression.active_mask import active_mask
 from mmweaver.compression.mmw_codec import compress_cube, describe_mmw, errors_db, read_cube, values_of_bytes
+from mmweaver.compression.mmw_field import open_mmw
 from mmweaver.compression.optimiser import EXACT_DB
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843, BGT60
@@ -212,6 +213,7 @@ def test_what_fits_is_stored_to_the_last_digit(tmp_path: Path):
     (tmp_path / "a.mmw").write_bytes(compress_cube(cube, num_bytes=cube.values.nbytes + 500))
     np.testing.assert_allclose(read_cube(tmp_path / "a.mmw").values, cube.values, rtol=1e-6)
     assert describe_mmw(tmp_path / "a.mmw")["chunks"][0]["mode"] == "exact"
+    np.testing.assert_allclose(open_mmw(tmp_path / "a.mmw").cube().values, cube.values, rtol=1e-6, atol=1e-6)
 
 
 def test_a_file_that_was_cut_short_holds_the_frames_before(long_file: bytes, tmp_path: Path):

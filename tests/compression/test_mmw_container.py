@@ -33,7 +33,7 @@ def test_header_and_chunks_round_trip(config, path: Path):
     assert file.header.scale == 2.5
     assert file.frame_time_s == pytest.approx(TIMES_S)
     assert [record.num_frames for record in file.records] == [2, 1]
-    assert [file.chunk(0), file.chunk(1)] == CHUNKS
+    assert [file.payload(0), file.payload(1)] == CHUNKS
     assert not file.cut_short
 
 
@@ -71,7 +71,7 @@ def test_any_changed_byte_is_noticed(path: Path):
 def test_a_file_cut_anywhere_holds_its_whole_chunks(path: Path):
     data = packed()
     path.write_bytes(data)
-    first = MmwFile(path).records[1].offset - 9  # where the second record begins
+    first = MmwFile(path).places[1].start  # where the second record begins
     for at in range(len(data)):
         path.write_bytes(data[:at])
         if at < first:
@@ -80,12 +80,21 @@ def test_a_file_cut_anywhere_holds_its_whole_chunks(path: Path):
         else:
             file = MmwFile(path)
             assert file.cut_short == at - first
-            assert [file.chunk(index) for index in range(len(file.records))] == CHUNKS[:1]
+            assert [file.payload(index) for index in range(len(file.records))] == CHUNKS[:1]
+
+
+def test_a_damaged_length_is_damage_and_not_a_file_cut_short(path: Path):
+    path.write_bytes(packed())
+    data, at = bytearray(path.read_bytes()), MmwFile(path).places[1].start
+    data[at + 2] ^= 0xFF  # far beyond the end of the file
+    path.write_bytes(data)
+    with pytest.raises(InputError, match="chunk 1"):
+        MmwFile(path)
 
 
 def test_foreign_and_missing_files_have_one_clear_line(path: Path, tmp_path: Path):
     path.write_bytes(b"PK\x03\x04" + bytes(100))
-    with pytest.raises(InputError, match=r"is no \.mmw file"):
+    with pytest.raises(InputError, match=r"a\.mmw is no"):
         MmwFile(path)
     with pytest.raises(InputError, match="cannot read"):
         MmwFile(tmp_path / "none.mmw")
@@ -101,7 +110,7 @@ def test_listed_chunks_of_version_2_are_found(path: Path):
     values = {"radar": {"preset": "awr1843"}, "frame_start_s": 1.0, "frame_period_s": 0.1, "chunks": [[2, 60], [1, 12]]}
     path.write_bytes(_version_2(values))
     file = MmwFile(path)
-    assert [file.chunk(0), file.chunk(1)] == CHUNKS
+    assert [file.payload(0), file.payload(1)] == CHUNKS
     assert file.frame_time_s == pytest.approx(TIMES_S)
 
 
@@ -132,4 +141,4 @@ def _read_all(path: Path) -> None:
     if file.cut_short:
         raise InputError("cut short")
     for index in range(len(file.records)):
-        file.chunk(index)
+        file.payload(index)

@@ -77,7 +77,7 @@ def test_a_disk_that_takes_no_more_is_an_error_and_what_was_whole_is_read(
             raise OSError(errno.ENOSPC, "No space left on device")
 
         monkeypatch.setattr(os, "fsync", full)
-        with pytest.raises(InputError, match=r"cannot write \S+a\.mmw: No space left"):
+        with pytest.raises(InputError, match=r"a\.mmw: No space"):
             writer.append(piece(4, 4), num_bytes=700)
     path.write_bytes(path.read_bytes()[:-30])  # the last bytes never came
     assert np.array_equal(read_cube(path).values, whole.values)

@@ -31,7 +31,7 @@ def test_a_damaged_signal_is_refused_when_read(activity_set: Path, tmp_path: Pat
     _damage(chunk, how)
     stored = read_activity_set(copy)
     assert stored.cube(1).values.any()
-    with pytest.raises(InputError, match="make it anew with"):
+    with pytest.raises(InputError, match="mmweaver dataset"):
         stored.cube(17)  # in the second shard
 
 

@@ -107,7 +107,7 @@ def test_a_finished_set_is_left_alone(activity_set: Path):
 def test_an_activity_without_a_place_is_named_before_anything_is_written(tmp_path: Path):
     made = builder(tmp_path / "set", OPTIONS)
     made._obstacle = lambda draw, label: "'a person walks': no room" * (label == 1)  # type: ignore[method-assign]
-    with pytest.raises(InputError, match="no place in room 0 serves 'a person walks': no room"):
+    with pytest.raises(InputError, match=r"room 0 .*'a person walks'"):
         made.make()
     assert not (tmp_path / "set").exists()
 

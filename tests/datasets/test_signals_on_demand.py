@@ -83,7 +83,7 @@ def test_another_version_of_the_signal_is_noticed(both: tuple[ActivitySet, Activ
     stored = read_activity_set(both[0].files.folder)
     assert stored.on_demand is not None
     stored.on_demand._power_db = stored.on_demand._power_db + 1.0
-    with pytest.raises(InputError, match="makes another signal of sequence 0"):
+    with pytest.raises(InputError, match="sequence 0"):
         stored.cube(0)
     stored.on_demand.method = "gone"
     stored.on_demand._rooms.clear()
@@ -98,7 +98,7 @@ def test_what_cannot_be_made_again_is_refused(tmp_path: Path):
     with_background = room.with_background(
         plain.generate(room, "a person stands", frames=2).cube  # any cube of this radar
     )
-    for weaver, where, said in ((first_order, room, "bounces"), (plain, with_background, "background")):
+    for weaver, where, said in ((first_order, room, "propagation"), (plain, with_background, "background")):
         with pytest.raises(InputError, match=said):
             SetBuilder(
                 tmp_path / "set", read_activities(tmp_path / "a.toml"), [where], weaver, replace(FEW, iq="none"),

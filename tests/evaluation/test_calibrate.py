@@ -146,7 +146,7 @@ def test_a_short_recording_says_how_far_its_drift_holds():
 
 def test_it_says_what_it_could_not_see(found: Calibration, tmp_path: Path):
     text = found.text()
-    assert text.index("not seen") < text.index("range bias: it takes an echo at a known distance")
+    assert text.index("not seen") < text.index("range bias: ")
     assert any(note.startswith("gain of echoes") for note in found.board.notes)
     assert set(found.to_values()) == {"board", "errors", "found", "not_seen", "warnings"}
     found.board.save(tmp_path / "made.json")
@@ -191,7 +191,7 @@ def test_a_recording_is_corrected_by_the_board_that_it_was_calibrated_from(board
 def test_where_a_skirt_ends():
     range_m = np.arange(100) * 0.05
     falling = 1e4 * 10 ** (-range_m * 8)
-    assert skirt_end(falling, 1.0, range_m)[1] == "it falls to the noise of a cell"
+    assert skirt_end(falling, 1.0, range_m)[1].endswith("noise of a cell")
     wall = falling + 3e3 * np.exp(-(((range_m - 0.6) / 0.05) ** 2))
     end, how = skirt_end(wall, 1.0, range_m)
     assert range_m[end] < 0.6

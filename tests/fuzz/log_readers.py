@@ -16,8 +16,9 @@ import torch
 
 from mmweaver.cli.arguments import parsed
 from mmweaver.cli.main import parser_of
-from mmweaver.compression.lossless_file import CHECK, LosslessFile, compress_bin
+from mmweaver.compression.checked_file import CHECK
 from mmweaver.compression.lossless_file import PREFIX as LOSSLESS
+from mmweaver.compression.lossless_file import LosslessFile, compress_bin
 from mmweaver.core.presets import MMMESH, PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_tensors import read_checkpoint

@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.compression.mmw_container import CHECK, HEAD_CHECK, PREFIX, RECORD, VERSION, WORDS
+from mmweaver.compression.checked_file import CHECK, HEAD_CHECK, PREFIX
+from mmweaver.compression.mmw_container import RECORD, VERSION, WORDS
 
 ODD_NUMBERS: list[Any] = [
     0, -1, 1, 2**31, 2**32 + 1, 2**63, 10**40, 10**400, -(10**18), 1e308, -1e308, 1e-320, 1e30, 1e9, 0.5,

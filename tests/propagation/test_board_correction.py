@@ -102,7 +102,7 @@ def test_what_cannot_be_taken_away_is_said():
 def test_boards_that_cannot_be_undone_are_refused():
     coupled = Board(name="wet", coupling_real=np.ones((12, 12)), coupling_imag=np.zeros((12, 12)))
     raw = recorded(Board(), AWR1843)
-    with pytest.raises(InputError, match="'wet' couples antennas so that they cannot be taken apart"):
+    with pytest.raises(InputError, match="'wet' couples"):
         corrected(raw, coupled)
     with pytest.raises(InputError, match=r"2 x 4.*3 x 4"):
         corrected(raw, Board(channel_gain_db=np.zeros((2, 4)), channel_phase_deg=np.zeros((2, 4))))

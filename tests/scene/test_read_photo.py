@@ -204,7 +204,7 @@ def test_sources_of_classes_exclude_each_other(files: Files, tmp_path: Path):
     photo, _ = read_photo(files.rgb, files.depth, files.camera, classes=tmp_path / "classes.png")
     assert photo.classes is not None
     assert (photo.classes.index == photo.classes.names.index("couch")).all()
-    with pytest.raises(InputError, match="leave out --segmenter"):
+    with pytest.raises(InputError, match="leave out segmenter"):
         read_photo(files.rgb, files.depth, classes=tmp_path / "classes.png", segmenter="any")
     with pytest.raises(InputError, match="segmenter"):
         read_photo(files.rgb, files.depth, sam="any")

@@ -106,7 +106,7 @@ def test_others_are_refused_in_one_line(tmp_path: Path):
     write_bag(path, DRIVER)
     with pytest.raises(InputError, match=r"2 depth pictures.*9"):
         read_bag_photo(path, 9)
-    with pytest.raises(InputError, match="no depth at all"):
+    with pytest.raises(InputError, match="no depth"):
         read_bag_photo(path, 0)
     whole = path.read_bytes()
     for damaged in (b"", b"#ROSBAG V2.0\n", whole[: len(whole) // 3], b"no bag" * 100):

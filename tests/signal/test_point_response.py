@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import torch
 
+from mmweaver.compression.signal_field import finer_grid
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid
 from mmweaver.signal.point_response import PointResponse, Points
-from studies.fields.sampling import finer_grid
 from tests.compression.echoes import SMALL, direction_of, error_db, exact_point
 
 
@@ -82,6 +82,24 @@ def test_a_finer_grid_holds_the_cells_of_the_own_one():
     own = response.render(points, response.axes())
     finer = response.render(points, response.axes(finer_grid(grid, n_r=2.0, n_d=2.0)))
     assert torch.allclose(finer[::2, ::2], own, atol=1e-5)
+
+
+def test_single_cells_equal_those_of_the_grid():
+    response = PointResponse(SMALL)
+    axes = response.axes()
+    points = point(response, 1.4, 0.6, direction_of(-0.2, 0.1))
+    whole = response.render(points, axes) * response.phasor(axes)
+    r, d, a = np.array([2, 9, 20]), np.array([1, 10, 15]), np.array([0, 5, 11])
+    cells = replace(
+        axes,
+        range_bin=axes.range_bin[r],
+        doppler_bin=axes.doppler_bin[d],
+        place=axes.place[a],
+        delay=axes.delay[a],
+        parts=axes.parts[:, a],
+    )
+    some = response.cells(points, cells) * response.phasor(cells, is_grid=False)
+    assert torch.allclose(some, whole[r, d, a], atol=1e-6)
 
 
 def test_it_can_be_differentiated():

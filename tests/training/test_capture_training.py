@@ -1,5 +1,6 @@
 """Fine-tuning on captures: it learns the room, leaves echoes of unknown people, estimates the gain of a recording."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -69,7 +70,7 @@ def test_without_joints_only_static_clutter_changes(captures, start, tmp_path: P
     card = load_weights(file)[1]
     assert card.tuned_from == sha256_of(start)
     page = (tmp_path / "README.md").read_text()
-    assert "1 captures of the user's own, 0 of them with joints" in page
+    assert re.search(r"\b1 captures .*\b0 .*joints", page)
     assert card.tuned_from in page
 
 

@@ -39,5 +39,5 @@ def test_it_learns_what_moves(tmp_path: Path):
 
 def test_windows_longer_than_all_recordings_are_refused(tmp_path: Path):
     windows = PoseWindows(recordings=[posed_frames(moving_arm(0))], window_frames=50)
-    with pytest.raises(InputError, match="50 frames; choose shorter windows"):
+    with pytest.raises(InputError, match="50 frames"):
         train_pose(windows, windows, tmp_path, RECIPE)

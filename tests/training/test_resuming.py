@@ -54,5 +54,5 @@ def test_it_resumes_with_its_number_of_threads(tmp_path: Path, caplog: pytest.Lo
 
 def test_a_state_of_something_else_is_refused(tmp_path: Path):
     (tmp_path / "state.pt").write_text("weights")
-    with pytest.raises(InputError, match="delete it to start over"):
+    with pytest.raises(InputError, match="delete it"):
         run(tmp_path / "state.pt", 3)

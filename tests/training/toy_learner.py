@@ -13,7 +13,7 @@ from torch import Tensor, nn
 
 from mmweaver.core.seeding import stream
 from mmweaver.training.device import ComputeDevice, Share
-from mmweaver.training.trainer import Learner, LoopRecipe, Progress, Trainer
+from mmweaver.training.trainer import BatchSampler, Learner, LoopRecipe, Progress, Trainer
 
 RECIPE = LoopRecipe(
     name="toy", steps=8, batch_size=4, learning_rate=0.05, warm_up_steps=2, validate_every=4, validation_batches=3
@@ -42,9 +42,9 @@ def draw(step: int, share: Share) -> tuple[Tensor, Tensor]:
     return x, x[:, 0] - 2 * x[:, 1]
 
 
-def trainer(out: Path, recipe: LoopRecipe = RECIPE, **options) -> Trainer:
-    options = {"train": draw, "validation": lambda index, share: draw(1000 + index, share)} | options
-    return Trainer(ToyLearner(), recipe, out, **options)
+def trainer(out: Path, recipe: LoopRecipe = RECIPE, train: BatchSampler = draw, **options) -> Trainer:
+    batches = (train, lambda index, share: draw(1000 + index, share))
+    return Trainer(ToyLearner(), recipe, out, batches=batches, **options)
 
 
 if __name__ == "__main__":

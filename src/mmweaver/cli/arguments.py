@@ -29,13 +29,15 @@ REQUEST_FILE = "request.toml"
 HELP_ALL = "--help-all"
 # written into request.toml even where they are the default, which may change
 ALWAYS_WRITTEN = ("radar", "frames", "seed", "points", "method", "board")
-IGNORED_IN_FILES = ("draws", "html", "strict")  # of 0.2, which do not affect the signal
+IGNORED_IN_FILES = ("draws", "html", "strict", "log-level")  # of 0.2, which do not affect the signal
+# defaults of 0.2 that a file may name; switches were off
+OLD_DEFAULTS = {"repeat": 1, "motion-model-for": "unknown", "precision": "auto", "lighting": "", "effort": "full"}
 # Options of 0.2: their present name, possibly with a key that precedes the value; or what to do instead.
 RENAMED = {
     "--empty-room": "--background",
     "--each": "--per-class",
     "--repeat": "--per-class",
-    "--doing": "--action",
+    **dict.fromkeys(("--doing", "--body-z"), "a board is calibrated from signals, not from point clouds; leave it out"),
     "--effort": "--preset",
     "--further-photos": "--extra-views",
     "--start": "--weights",
@@ -54,8 +56,8 @@ RENAMED = {
     **{f"--motion-{key}": f"--motion-set={key}=" for key in ("fps", "unit", "up", "start")},
     **{f"--mesh-{key}": f"--mesh-set={key}=" for key in ("eye", "look", "unit", "up", "materials")},
     "--html": "make it of the results: mmweaver view DIR --out FILE",
-    "--bounces": "make paths of first order in Python: Weaver(Physics(Propagation(bounces=1)))",
-    "--clutter": "leave clutter out in Python: Weaver(Physics(Propagation(clutter=False)))",
+    "--bounces": "--method-set=bounces=",
+    "--clutter": "--method-set=clutter=",
     "--draws": "generate sentences that need places of their own alone, with --text",
     "--log-level": "-v logs each stage",
     "--list": "",
@@ -285,12 +287,18 @@ def _read_file(file: Path, command: str, kind: type[General]) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for name, value in values.items():
         key = name.replace("_", "-")
-        if key in IGNORED_IN_FILES:
-            print(f"mmweaver: {file}: {key} has no effect any more", file=sys.stderr)
-            continue
         if f"--{key}" in RENAMED:
-            key, _, prefix = renamed(f"--{key}")[2:].partition("=")
-            value = f"{prefix}{write_word(value)}" if prefix else value
+            if key in IGNORED_IN_FILES or value is False or value == OLD_DEFAULTS.get(key):
+                print(f"mmweaver: {file}: {key} has no effect any more", file=sys.stderr)
+                continue
+            new = renamed(f"--{key}").removeprefix("--")
+            if not new:
+                continue
+            key, _, prefix = new.partition("=")
+            if new == "PATH":
+                key = next(option_name(one) for one in known.values() if one.metadata.get("positional"))
+            elif prefix:
+                value = prefix if value is True else f"{prefix}{write_word(value)}"
         if key not in known:
             near = difflib.get_close_matches(key, known, n=1, cutoff=0.5)
             hint = f"did you mean {near[0]!r}?" if near else f"see mmweaver {command} --help-all"

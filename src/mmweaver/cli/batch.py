@@ -4,6 +4,7 @@ All sentences have the same places, headings, people and lengths (matched draws)
 """
 
 import json
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -184,7 +185,7 @@ def run_batch(asked: "Options", out: Path) -> int:
     """Makes what is missing of the sequences and prints which there are. Raises InputError."""
     from mmweaver.cli.generate_inputs import radar_of, read_background, room_of, weaver_of
     from mmweaver.core.output_checks import check_output_folder
-    from mmweaver.datasets.paired_sampling import GivenPlacing, heading_rad
+    from mmweaver.datasets.paired_sampling import GivenPlacing
 
     check_output_folder(out, overwrite=True, files=[LIST, LEAKS], inputs=asked.inputs)
     person = asked.of_one_person("--texts makes sequences of one person each")
@@ -193,7 +194,7 @@ def run_batch(asked: "Options", out: Path) -> int:
     weaver = weaver_of(asked, radar_of(asked, background))
     requests = _parsed(asked, weaver, texts)
     room = room_of(asked, weaver, background)
-    heading = None if asked.heading_rad is None else heading_rad(asked.heading_rad)
+    heading = None if asked.heading_rad is None else round(math.degrees(asked.heading_rad) + 90, 10)
     given = GivenPlacing(
         start_m=person["at"], heading_deg=heading, height_m=person["height_m"], subject=person["subject"]
     )

@@ -1,28 +1,23 @@
 """mmweaver evaluate: scores what was trained on generated data alone on recordings of real people."""
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal
 
 from mmweaver.cli.option_groups import Printed
 from mmweaver.cli.recognise_text import score_lines
-from mmweaver.core.errors import InputError
 from mmweaver.core.options import MISSING, option, options
 
-FROZEN_POSE = "pose_mars"
 SHIPPED_TASK, SHIPPED_MODEL = "examples/tasks/radhar.toml", "recogniser_radhar"
 
 EXAMPLES = """examples:
   mmweaver evaluate zero-shot-activity --recordings RadHAR/Data/Test
   mmweaver evaluate zero-shot-activity --recordings recordings/ --json
   mmweaver evaluate zero-shot-activity --weights model/ --recordings recordings/
-  mmweaver evaluate zero-shot-pose --recordings MARS/ --json
 
-Without --weights the recogniser is that of examples/tasks/radhar.toml. Recordings are of an IWR1443 at 30 frames a
-second, as RadHAR publishes them (.txt, one message a point) or as .npz with frame (point) and pts (point, 8). The
+Without --weights the recogniser is that of examples/tasks/radhar.toml. Recordings are of an IWR1443 at 30 frames per
+second, as RadHAR publishes them (.txt, one message per point) or as .npz with frame (point) and pts (point, 8). The
 activity is the subfolder's name or a word of the file's name: boxing, jack, jump, squats, walk. For other radars and
 activities train a model from a task file: docs/recognise.md.
-Those of zero-shot-pose are MARS, or one of its subjects (radar_data_test.csv, kinect_data_test.csv): docs/pose.md.
 """
 
 
@@ -30,23 +25,19 @@ Those of zero-shot-pose are MARS, or one of its subjects (radar_data_test.csv, k
 class Options(Printed):
     """Trains on generated data alone and scores on recordings of real people."""
 
-    task: Literal["zero-shot-activity", "zero-shot-pose"] = option("what is scored", default=MISSING, positional=True)
+    task: Literal["zero-shot-activity"] = option("what is scored", default=MISSING, positional=True)
     recordings: Path = option("folder of recordings", "DIR", default=MISSING)
-    weights: Path | None = option("a folder of mmweaver recognise train or train pose", "DIR")
-    split: Literal["train", "validate", "test"] | None = option("zero-shot-pose: of MARS (default test)")
+    weights: Path | None = option("a folder of mmweaver recognise train", "DIR")
 
 
 def run(asked: Options) -> int:
     """Prints the scores on stdout. Raises InputError for a folder without readable recordings."""
-    evaluated, as_lines = TASKS[asked.task]
-    scores = evaluated(asked)
-    return asked.report(scores, *as_lines(scores))
+    scores = _activities(asked)
+    return asked.report(scores, *lines(scores))
 
 
 def _activities(asked: Options) -> dict[str, Any]:
     """Scores of a recogniser of a task file, by default of the one that comes with the repository."""
-    if asked.split is not None:
-        raise InputError("--split is for zero-shot-pose; all recordings of activities are scored")
     from mmweaver.core.repository_files import repository_file
     from mmweaver.recognition.point_recordings import read_task_recordings
     from mmweaver.recognition.recogniser import META_FILE, load_recogniser
@@ -66,39 +57,7 @@ def _activities(asked: Options) -> dict[str, Any]:
     return {"task": asked.task, "model": folder.name, **made, **scores}
 
 
-def _poses(asked: Options) -> dict[str, Any]:
-    """Scores of a pose network, by default of the frozen one."""
-    from mmweaver.core.repository_files import repository_file
-    from mmweaver.models.weights import WEIGHTS_FILE
-    from mmweaver.recognition.pose_estimator import load_estimator
-    from studies.recognition.score_poses import score_poses
-
-    model = asked.weights
-    if model is None:
-        otherwise = "train some with mmweaver train pose and give them by --weights"
-        model = repository_file(f"{FROZEN_POSE}/{WEIGHTS_FILE}", "the folder of frozen pose networks", otherwise).parent
-    scores = score_poses(load_estimator(model), asked.recordings, asked.split or "test")
-    return {"task": asked.task, "model": model.name, **scores}
-
-
 def lines(scores: dict[str, Any]) -> list[str]:
     """The scores for people."""
     windows = f"trained on {scores['generated_windows']} generated windows"
     return [f"recogniser {scores['model']} of the task file {scores['task_file']}, {windows}", *score_lines(scores)]
-
-
-def pose_lines(scores: dict[str, Any]) -> list[str]:
-    """Errors in cm, by alignment and group of joints."""
-    text = [f"split {scores['split']} of {len(scores['subjects'])} subjects; mean distance of joints in cm"]
-    for method, of_alignment in scores["mean"].items():
-        text.append(f"  {method.replace('_', ' ')}")
-        for alignment, groups in of_alignment.items():
-            words = ", ".join(f"{group} {value:.1f}" for group, value in groups.items())
-            text.append(f"    {alignment:11} {words}")
-    return text
-
-
-TASKS: dict[str, tuple[Callable[[Options], dict[str, Any]], Callable[[dict[str, Any]], list[str]]]] = {
-    "zero-shot-activity": (_activities, lines),
-    "zero-shot-pose": (_poses, pose_lines),
-}

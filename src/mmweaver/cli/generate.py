@@ -210,6 +210,12 @@ class Advanced(Layout):
     weights: Source | None = option(
         "the network's weights: a file or folder of mmweaver train, or a name on the Hub", "FILE|DIR|HUB"
     )
+    method_set: list[Setting] | None = option(
+        "leave out of weaver and physics: bounces=1, paths over body and room, or over two surfaces; clutter=resolved,"
+        " static clutter that photo and mesh do not resolve",
+        "KEY=VALUE",
+        rare=True,
+    )
 
 
 @options

@@ -3,6 +3,9 @@
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from mmweaver.core.errors import InputError
+from mmweaver.core.options import read_settings
+
 if TYPE_CHECKING:
     from mmweaver.cli.generate import Options
     from mmweaver.core.radar_config import RadarConfig
@@ -56,10 +59,12 @@ def weaver_of(asked: "Options", radar: "RadarConfig", listener: "Callable[[str],
     """
     from mmweaver.io.radar_file import load_firmware
     from mmweaver.io.ti_calibration import read_ti_calibration
+    from mmweaver.models.methods import Learned, Physics
+    from mmweaver.propagation.static_paths import ALL_PATHS, Propagation
     from mmweaver.weaver.front_door import Weaver
 
     name = asked.radar_name(DEFAULT_RADAR) or ""
-    return Weaver(
+    weaver = Weaver(
         method=asked.method,
         radar=radar,
         listener=listener,
@@ -68,6 +73,17 @@ def weaver_of(asked: "Options", radar: "RadarConfig", listener: "Callable[[str],
         firmware=load_firmware(asked.radar or DEFAULT_RADAR) if asked.points == "firmware" else None,
         calibration=read_ti_calibration(name),
     )
+    settings = {"bounces": 2, "clutter": "all"} | read_settings(
+        asked.method_set, {"bounces": int, "clutter": str}, "method-set"
+    )
+    if settings["bounces"] not in (1, 2) or settings["clutter"] not in ("all", "resolved"):
+        raise InputError("--method-set has bounces=1 or 2 and clutter=all or resolved")
+    propagation = Propagation(bounces=settings["bounces"], clutter=settings["clutter"] == "all")
+    if propagation != ALL_PATHS:
+        if not isinstance(weaver.method, Physics | Learned):
+            raise InputError(f"--method-set is for weaver and physics, not for {asked.method}; leave it out")
+        weaver.method.propagation = propagation
+    return weaver
 
 
 def room_of(asked: "Options", weaver: "Weaver", background: "RadarCube | None") -> "Room":

@@ -9,6 +9,8 @@ a damaged length from a truncated file.
 import struct
 import zlib
 from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO, ClassVar
 
@@ -30,6 +32,15 @@ def head_check(head: bytes) -> bytes:
     return HEAD_CHECK.pack(zlib.crc32(head) & 0xFFFF)
 
 
+@dataclass(frozen=True, kw_only=True)
+class RecordPlace:
+    """Where a record lies in its file."""
+
+    start: int
+    offset: int  # of the payload
+    num_bytes: int  # of the payload
+
+
 class CheckedFile(ABC):
     """A file whose header and record positions are read and checked on construction, records on demand.
 
@@ -40,6 +51,7 @@ class CheckedFile(ABC):
     SUFFIX: ClassVar[str]
     READABLE: ClassVar[tuple[int, ...]]  # versions
     MADE_BY: ClassVar[str]  # the command that makes one
+    RECORD_NAME: ClassVar[str]
 
     def __init__(self, path: Path | str):
         """Reads the header and finds the records.
@@ -51,6 +63,7 @@ class CheckedFile(ABC):
             InputError: If the file is unreadable, of another kind, or damaged before its first record.
         """
         self.path, self.cut_short = Path(path), 0
+        self.places: list[RecordPlace] = []
         self.num_bytes = check_regular(path)
         with open_regular(path) as stream:
             front = stream.read(PREFIX.size)
@@ -81,24 +94,48 @@ class CheckedFile(ABC):
     def _find_records(self, stream: BinaryIO) -> None:
         """Finds the records, the first of which begins at the position of the stream."""
 
-    def read_checked(self, start: int, num_bytes: int, what: str) -> bytes:
-        """Reads bytes that are followed by their CRC-32.
+    def _scanned(
+        self, stream: BinaryIO, head: struct.Struct, extra: Callable[..., int | None]
+    ) -> Iterator[tuple[tuple[int, ...], bytes]]:
+        """Finds the records from where the stream is; nothing is read but what stands in front of the payloads.
 
         Args:
-            start: Position of the first byte.
-            num_bytes: Number of bytes, without the CRC-32.
-            what: Name of the part in error messages.
+            stream: the file.
+            head: of a record; its first field is the length of the payload.
+            extra: bytes that follow a head with these other fields; None for impossible ones.
 
-        Raises:
-            InputError: If the checksum does not match.
+        Yields:
+            The other fields of each whole record's head, and its extra bytes.
         """
+        at = stream.tell()
+        while at + head.size <= self.num_bytes:
+            stream.seek(at)
+            front = stream.read(head.size)
+            length, *fields = head.unpack(front)
+            num_extra = extra(*fields)
+            offset = at + head.size + (num_extra or 0) + HEAD_CHECK.size
+            if num_extra is not None and offset > self.num_bytes:
+                break
+            words, check = stream.read(num_extra or 0), stream.read(HEAD_CHECK.size)
+            if num_extra is None or check != head_check(front + words):
+                raise self.damaged(f"{self.RECORD_NAME} {len(self.places)} fails its checksum")
+            if offset + length + CHECK.size > self.num_bytes:
+                break
+            self.places.append(RecordPlace(start=at, offset=offset, num_bytes=length))
+            yield tuple(fields), words
+            at = offset + length + CHECK.size
+        self.cut_short = self.num_bytes - at
+
+    def payload(self, index: int) -> bytes:
+        """A record's payload. Raises InputError where the record fails its checksum."""
+        place = self.places[index]
         with open_regular(self.path) as stream:
-            stream.seek(start)
-            data = stream.read(num_bytes + CHECK.size)
-        body = data[:num_bytes]
-        if len(data) < num_bytes + CHECK.size or CHECK.unpack(data[num_bytes:])[0] != zlib.crc32(body):
-            raise self.damaged(f"{what} fails its checksum")
-        return body
+            stream.seek(place.start)
+            data = stream.read(place.offset + place.num_bytes + CHECK.size - place.start)
+        body, check = data[: -CHECK.size], data[-CHECK.size :]
+        if len(body) < place.offset + place.num_bytes - place.start or CHECK.unpack(check)[0] != zlib.crc32(body):
+            raise self.damaged(f"{self.RECORD_NAME} {index} fails its checksum")
+        return body[place.offset - place.start :]
 
     def damaged(self, why: str) -> InputError:
         """The error that reports damage of this file."""

@@ -20,7 +20,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from mmweaver.compression.checked_file import CHECK, HEAD_CHECK, PREFIX, CheckedFile, checked, head_check
+from mmweaver.compression.checked_file import PREFIX, CheckedFile, checked, head_check
 from mmweaver.compression.sample_block import BlockShape, decode_block, encode_block
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
@@ -127,6 +127,7 @@ class LosslessFile(CheckedFile):
     """A .mmwl file: header and block positions are read and checked on construction, blocks on demand."""
 
     MAGIC, SUFFIX, READABLE = MAGIC, ".mmwl", (VERSION,)
+    RECORD_NAME = "block"
     MADE_BY = "mmweaver compress ADC_DATA.bin --radar RADAR --quality lossless -o OUT.mmwl"
 
     @property
@@ -174,7 +175,7 @@ class LosslessFile(CheckedFile):
             InputError: If a block fails its checksum, or the last one is incomplete.
         """
         for index in range(len(self.block_frames)):
-            self._payload(index)
+            self.payload(index)
         if self.cut_short:
             raise self.damaged(f"{self.cut_short} bytes at its end are no whole block")
 
@@ -189,7 +190,7 @@ class LosslessFile(CheckedFile):
         """
         count = self.block_frames[index]
         try:
-            samples = decode_block(self._payload(index), self.header.shape(count))
+            samples = decode_block(self.payload(index), self.header.shape(count))
         except (ValueError, IndexError, struct.error, AssertionError, OverflowError) as error:
             raise self.damaged(f"block {index} is malformed ({error})") from None
         config = self.header.config
@@ -199,15 +200,10 @@ class LosslessFile(CheckedFile):
     def _tail(self, index: int) -> bytes:
         unpacker = zlib.decompressobj()
         try:
-            data = unpacker.decompress(self._payload(index), self.header.frame_bytes)
+            data = unpacker.decompress(self.payload(index), self.header.frame_bytes)
         except zlib.error as error:
             raise self.damaged(f"its last bytes are malformed ({error})") from None
         return data
-
-    def _payload(self, index: int) -> bytes:
-        start, length = self._places[index]
-        head = BLOCK.size + HEAD_CHECK.size
-        return self.read_checked(start, head + length, f"block {index}")[head:]
 
     def _read_header(self, body: bytes) -> None:
         values: dict[str, Any] = parse_json(
@@ -222,22 +218,10 @@ class LosslessFile(CheckedFile):
             raise ValueError("frames in a block")
 
     def _find_records(self, stream: BinaryIO) -> None:
-        self.block_frames: list[int] = []
-        self._places: list[tuple[int, int]] = []
-        at = stream.tell()
-        while at + BLOCK.size + HEAD_CHECK.size <= self.num_bytes:
-            stream.seek(at)
-            head, check = stream.read(BLOCK.size), stream.read(HEAD_CHECK.size)
-            length, count = BLOCK.unpack(head)
-            if check != head_check(head) or count > self.header.frames_a_block:
-                raise self.damaged(f"block {len(self._places)} fails its checksum")
-            end = at + BLOCK.size + HEAD_CHECK.size + length + CHECK.size
-            if end > self.num_bytes:
-                break
-            self.block_frames.append(count)
-            self._places.append((at, length))
-            at = end
-        self.cut_short = self.num_bytes - at
+        most = self.header.frames_a_block
+        self.block_frames = [
+            count for (count,), _ in self._scanned(stream, BLOCK, lambda count: 0 if count <= most else None)
+        ]
 
 
 def is_lossless_file(path: Path | str) -> bool:

@@ -201,7 +201,7 @@ def read_chunk(file: MmwFile, index: int, *, with_residual: bool = True) -> Deco
         InputError: If the chunk is damaged.
     """
     decode = decode_legacy_chunk if file.version in LISTED else decode_chunk
-    chunk = decode(file.chunk(index), file.header.config, with_residual=with_residual)
+    chunk = decode(file.payload(index), file.header.config, with_residual=with_residual)
     if chunk.frames.num_frames != file.records[index].num_frames:
         raise InputError(f"{file.path} is damaged: chunk {index} has a wrong number of frames; compress it again")
     return chunk

@@ -20,7 +20,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from mmweaver.compression.checked_file import CHECK, HEAD_CHECK, PREFIX, CheckedFile, checked, head_check
+from mmweaver.compression.checked_file import CHECK, PREFIX, CheckedFile, RecordPlace, checked, head_check
 from mmweaver.compression.entropy import VERSION
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import PRESETS
@@ -64,9 +64,8 @@ class MmwHeader:
 
 @dataclass(frozen=True, kw_only=True)
 class MmwRecord:
-    """Position of a chunk in its file, and the times of its frames since the start of the recording."""
+    """Size of a chunk, and the times of its frames, counted from the start of the recording."""
 
-    offset: int  # of the payload
     num_bytes: int
     frame_time_s: np.ndarray
 
@@ -148,6 +147,7 @@ class MmwFile(CheckedFile):
     """A .mmw file: header and record positions are read and checked on construction, chunks on demand."""
 
     MAGIC, SUFFIX, READABLE = MAGIC, ".mmw", READABLE
+    RECORD_NAME = "chunk"
     MADE_BY = "mmweaver compress CAPTURE.npz --quality 30 -o OUT.mmw"
 
     def __init__(self, path: Path | str):
@@ -174,27 +174,25 @@ class MmwFile(CheckedFile):
         """Number of frames of all records."""
         return sum(record.num_frames for record in self.records)
 
-    def chunk(self, index: int) -> bytes:
-        """One chunk's payload. Raises InputError where it fails its checksum."""
-        record, start = self.records[index], self._starts[index]
-        body = self.read_checked(start, record.offset + record.num_bytes - start, f"chunk {index}")
-        return body[record.offset - start :]
-
     def _read_header(self, body: bytes) -> None:
-        self.end_of_header = PREFIX.size + len(body) + CHECK.size
         values = parse_json(_inflated(body), f"the header of {self.path}")
         self.header = _header_of(values)
         if self.version in LISTED:
-            self.records = self._listed(values)
+            self.records = self._listed(values, PREFIX.size + len(body) + CHECK.size)
 
     def _find_records(self, stream: BinaryIO) -> None:
-        if self.version not in LISTED:
-            self.records = self._scanned(stream)
+        if self.version in LISTED:
+            expected = self.places[-1].offset + self.places[-1].num_bytes + CHECK.size
+            if self.num_bytes != expected:
+                raise self.damaged(f"it has {self.num_bytes} bytes where its header promises {expected}")
             return
-        last = self.records[-1]
-        expected = last.offset + last.num_bytes + CHECK.size
-        if self.num_bytes != expected:
-            raise self.damaged(f"it has {self.num_bytes} bytes where its header promises {expected}")
+        self.records, last_s = [], None
+        for (num, kind), times in self._scanned(stream, RECORD, _num_time_bytes):
+            time_s = self._times(times, kind, num, last_s)
+            self.records.append(MmwRecord(num_bytes=self.places[-1].num_bytes, frame_time_s=time_s))
+            last_s = float(time_s[-1])
+        if not self.records and self.cut_short:
+            raise self.damaged("it is truncated before the end of its first chunk")
 
     def _check_promises(self) -> None:
         """Raises InputError where the records promise a cube far larger than any file of this size holds."""
@@ -208,8 +206,8 @@ class MmwFile(CheckedFile):
                 f"its {self.num_bytes} bytes promise {self.num_frames} frames of {frame_bytes / 1e6:.3g} MB"
             )
 
-    def _listed(self, values: dict[str, Any]) -> list[MmwRecord]:
-        """Places of the chunks of versions 1 and 2."""
+    def _listed(self, values: dict[str, Any], at: int) -> list[MmwRecord]:
+        """The chunks of versions 1 and 2, the first of which lies at `at`."""
         frames, sizes = zip(*values["chunks"], strict=True)
         if not all(type(number) is int and number > 0 for number in (*frames, *sizes)):
             raise ValueError("chunks")
@@ -222,39 +220,11 @@ class MmwFile(CheckedFile):
             time_s = float(values["frame_start_s"]) + np.arange(num) * float(values["frame_period_s"])
         if len(time_s) != num or not (np.abs(time_s) < MAX_TIME_S).all():
             raise ValueError("frame times")
-        records, at, first = [], self.end_of_header, 0
+        records, first = [], 0
         for count, length in zip(frames, sizes, strict=True):
-            records.append(MmwRecord(offset=at, num_bytes=length, frame_time_s=time_s[first : first + count]))
+            self.places.append(RecordPlace(start=at, offset=at, num_bytes=length))
+            records.append(MmwRecord(num_bytes=length, frame_time_s=time_s[first : first + count]))
             at, first = at + length + CHECK.size, first + count
-        self._starts = [record.offset for record in records]
-        return records
-
-    def _scanned(self, stream: BinaryIO) -> list[MmwRecord]:
-        """Positions of the records; only their heads are read."""
-        records: list[MmwRecord] = []
-        self._starts: list[int] = []
-        at, last_s = self.end_of_header, None
-        while at + RECORD.size <= self.num_bytes:
-            stream.seek(at)
-            head = stream.read(RECORD.size)
-            length, num, kind = RECORD.unpack(head)
-            extra = {FROM_FIRST: TIME.size, ALL_TIMES: TIME.size * num}.get(kind, 0)
-            offset = at + RECORD.size + extra + HEAD_CHECK.size
-            is_possible = kind <= ALL_TIMES and num > 0
-            if offset > self.num_bytes and is_possible:
-                break
-            times, check = stream.read(extra), stream.read(HEAD_CHECK.size)
-            if not is_possible or check != head_check(head + times):
-                raise self.damaged(f"record {len(records)} fails its checksum")
-            if offset + length + CHECK.size > self.num_bytes:
-                break
-            time_s = self._times(times, kind, num, last_s)
-            records.append(MmwRecord(offset=offset, num_bytes=length, frame_time_s=time_s))
-            self._starts.append(at)
-            at, last_s = offset + length + CHECK.size, float(time_s[-1])
-        self.cut_short = self.num_bytes - at
-        if not records and self.cut_short:
-            raise self.damaged("it is truncated before the end of its first chunk")
         return records
 
     def _times(self, data: bytes, kind: int, num: int, last_s: float | None) -> np.ndarray:
@@ -267,6 +237,10 @@ class MmwFile(CheckedFile):
         if not (np.abs(time_s) < MAX_TIME_S).all():
             raise self.damaged("its frame times are impossible")
         return time_s
+
+
+def _num_time_bytes(num: int, kind: int) -> int | None:
+    return {FOLLOWING: 0, FROM_FIRST: TIME.size, ALL_TIMES: TIME.size * num}.get(kind) if num else None
 
 
 def _is_regular(time_s: np.ndarray, first_s: float, period_s: float) -> bool:

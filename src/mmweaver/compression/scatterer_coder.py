@@ -15,6 +15,7 @@ from jaxtyping import Float, Int
 from mmweaver.compression.cell_coder import ClassMapCoder, LevelCoder
 from mmweaver.compression.entropy import MAX_UNIFORM, BitModel, BitStream, NumberModel
 from mmweaver.compression.scatterers.fit_window import FitWindow
+from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.signal.point_response import Axes, PointResponse, Points
 
 Integers = Int[np.ndarray, "_"]
@@ -66,7 +67,7 @@ class PointSteps:
 
 
 @dataclass(frozen=True, kw_only=True)
-class CodedPoints:
+class CodedPoints(TensorRecord):
     """Quantised scatterers, one row each, sorted by frame, range cell and Doppler cell."""
 
     frame: Integers
@@ -113,17 +114,18 @@ def quantize(points: Points, steps: PointSteps, axes: Axes, num_directions: int,
         parts = _direction_parts(size, steps.direction_sixteenths[side])
         cosine = points.direction.numpy()[frame, slot, side].astype(np.float64)
         direction[:, side] = np.clip(np.floor((cosine + 1) / 2 * parts).astype(np.int64), 0, _largest(parts))
-    order = np.lexsort((cells[1][0], cells[0][0], frame))
-    return CodedPoints(
-        frame=frame[order],
-        range_cell=cells[0][0][order],
-        doppler_cell=cells[1][0][order],
-        size=size[order],
-        phase=phase[order],
-        range_part=cells[0][1][order],
-        doppler_part=cells[1][1][order],
-        direction=direction[order],
+    (range_cell, range_part), (doppler_cell, doppler_part) = cells
+    coded = CodedPoints(
+        frame=frame,
+        range_cell=range_cell,
+        doppler_cell=doppler_cell,
+        size=size,
+        phase=phase,
+        range_part=range_part,
+        doppler_part=doppler_part,
+        direction=direction,
     )
+    return coded[np.lexsort((doppler_cell, range_cell, frame))]
 
 
 def dequantize(coded: CodedPoints, num_frames: int, steps: PointSteps, axes: Axes, num_directions: int) -> Points:

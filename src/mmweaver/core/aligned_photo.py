@@ -1,4 +1,4 @@
-"""An RGB-D photo whose gravity direction and floor are known: its pixels as points of the radar's frame, and back."""
+"""An RGB-D photo with known gravity direction and floor, and the mapping between its pixels and the radar's frame."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,7 +13,7 @@ from mmweaver.core.shapes import Array, Rotation, Vec3
 
 @dataclass(frozen=True, kw_only=True)
 class ProjectedPoints:
-    """Where points appear in a photo; shapes are those of the points."""
+    """Pixels onto which points project; all arrays have the leading shape of the points."""
 
     in_picture: Bool[Array, "*points"]
     row: Int[Array, "*points"]  # the nearest pixel's; 0 outside the picture
@@ -23,16 +23,30 @@ class ProjectedPoints:
 
 @dataclass(frozen=True, kw_only=True)
 class AlignedPhoto:
-    """A photo aligned with gravity. A radar at the camera differs from it by a rotation alone."""
+    """A photo aligned with gravity; the frame of a radar at the camera differs from the camera's by a rotation only.
+
+    Attributes:
+        photo: Colour, depth and intrinsics.
+        radar_from_camera: Rotation from the camera frame (x right, y down, z forward) to x right, y away, z up.
+        floor_z_m: Height of the floor in the radar's frame in metres; negative, since the floor is below the radar.
+        camera_m: Position of the camera in the radar's frame in metres. Default: the origin.
+    """
 
     photo: RgbdPhoto
-    radar_from_camera: Rotation  # camera x right, y down, z forward -> radar x right, y away, z up
-    floor_z_m: float  # below the radar, so negative
-    camera_m: Vec3 = field(default_factory=lambda: np.zeros(3))  # where the camera stands, in the radar's frame
+    radar_from_camera: Rotation
+    floor_z_m: float
+    camera_m: Vec3 = field(default_factory=lambda: np.zeros(3))
 
     @classmethod
     def of(cls, scene: Scene) -> "AlignedPhoto":
-        """The photo that a scene was reconstructed from."""
+        """Wraps the photo from which a scene was reconstructed.
+
+        Args:
+            scene: Scene with its photo, floor and radar pose.
+
+        Returns:
+            The photo in the frame of the scene's radar.
+        """
         return cls(
             photo=scene.photo,
             radar_from_camera=scene.radar_from_camera,
@@ -42,20 +56,34 @@ class AlignedPhoto:
 
     @cached_property
     def points_m(self) -> Float[Array, "height width 3"]:
-        """The measured point of every pixel, metres, radar's frame; nan where nothing was measured."""
+        """Points measured by the pixels, in metres in the radar's frame; nan where depth is missing."""
         return unproject(self.photo.depth_m, self.photo.intrinsics) @ self.radar_from_camera.T + self.camera_m
 
     @cached_property
     def rays(self) -> Float[Array, "height width 3"]:
-        """The viewing direction of every pixel in the radar's frame, scaled to a depth of 1."""
+        """Viewing direction of every pixel in the radar's frame, scaled so that depth times ray is the point."""
         return viewing_rays(self.photo.intrinsics) @ self.radar_from_camera.T
 
     def project(self, points_m: Float[Array, "*points 3"]) -> tuple[Float[Array, "*points 2"], Float[Array, "*points"]]:
-        """Pixels (column, row) and depth in metres of points of the radar's frame; nan pixels behind the camera."""
+        """Projects points into the photo.
+
+        Args:
+            points_m: Points in the radar's frame, metres, (..., 3).
+
+        Returns:
+            Pixels (column, row), (..., 2), nan behind the camera; and depth along the optical axis in metres, (...,).
+        """
         return project((points_m - self.camera_m) @ self.radar_from_camera, self.photo.intrinsics)
 
     def look_up(self, points_m: Float[Array, "*points 3"]) -> ProjectedPoints:
-        """The pixel nearest to each point of the radar's frame."""
+        """Finds the pixel nearest to the projection of each point.
+
+        Args:
+            points_m: Points in the radar's frame, metres, (..., 3).
+
+        Returns:
+            Row and column, depth, and whether the pixel lies inside the photo.
+        """
         pixels, depth_m = self.project(points_m)
         rows, columns = self.photo.depth_m.shape
         nearest = np.nan_to_num(np.round(pixels), nan=-1.0).clip(-1, 1e6).astype(int)

@@ -1,4 +1,4 @@
-"""Where the antennas of a radar board are: of a table (`presets.ANTENNAS` has known boards), or of a virtual array."""
+"""Antenna positions of a radar board, from a table (`presets.ANTENNAS` lists known boards) or from a virtual array."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -12,21 +12,34 @@ Places = tuple[tuple[float, float], ...]
 
 @dataclass(frozen=True, kw_only=True)
 class AntennaTable:
-    """Transmitters and receivers of a board, in the order of their numbers, at (x, z) in half wavelengths.
+    """Transmitters and receivers of a board by number, at (x, z) in half wavelengths.
 
-    x to the right and z up as seen from behind the board.
+    x points right and z up, seen from behind the board.
     """
 
     name: str
     tx_halfwaves: Places
     rx_halfwaves: Places
-    rx_inverted: tuple[int, ...] = ()  # fed from the other side: their phase is turned by 180 degrees
+    rx_inverted: tuple[int, ...] = ()  # receivers fed from the opposite side: 180 degrees phase shift
     source: str = ""
-    platforms: tuple[str, ...] = ()  # parts of the names that TI's files have for it
+    platforms: tuple[str, ...] = ()  # substrings by which TI's files name the board
 
 
 def antenna_table(name: str, values: Any, source: str = "") -> AntennaTable:
-    """A table of the lists `tx`, `rx` and `rx_inverted` of a file. Raises ValueError, KeyError or TypeError."""
+    """Builds a table from the lists `tx`, `rx` and `rx_inverted` of a file.
+
+    Args:
+        name: Name of the table.
+        values: Mapping with `tx` and `rx`, lists of (x, z) in half wavelengths, and optionally `rx_inverted`,
+            `source` and `platforms`.
+        source: Origin of the positions. Default: the entry `source` of `values`.
+
+    Returns:
+        The table.
+
+    Raises:
+        ValueError, KeyError, TypeError: If the lists are missing or malformed.
+    """
     tx, rx = (tuple((float(x), float(z)) for x, z in values[key]) for key in ("tx", "rx"))
     inverted = tuple(int(one) for one in values.get("rx_inverted", []))
     return AntennaTable(
@@ -42,20 +55,20 @@ def antenna_table(name: str, values: Any, source: str = "") -> AntennaTable:
 def table_of_virtual_array(
     name: str, places: np.ndarray, num_rx: int, inverted: tuple[int, ...] = (), source: str = ""
 ) -> AntennaTable:
-    """The table of a virtual array.
+    """Factors a virtual array into transmitters and receivers.
 
     Args:
         name: Name of the table.
-        places: Virtual antennas (tx * num_rx + rx, 2) in half wavelengths; the first transmitter is put at 0.
+        places: Virtual antennas (tx * num_rx + rx, 2) in half wavelengths; the first transmitter is placed at 0.
         num_rx: Number of receivers.
-        inverted: Receivers that are fed from the other side.
-        source: Where the places come from.
+        inverted: Receivers with a 180 degree phase shift.
+        source: Origin of the positions.
 
     Returns:
-        Transmitters and receivers.
+        Table of transmitters and receivers.
 
     Raises:
-        InputError: where no transmitters and receivers give such an array.
+        InputError: If the array is not the sum of transmitter and receiver positions.
     """
     if len(places) % num_rx:
         raise InputError(f"{len(places)} virtual antennas are no whole number of {num_rx} receivers")

@@ -1,5 +1,5 @@
-"""Sentences on what was assumed."""
+"""Assumptions that a run reports."""
 
 
 class UsualAssumption(str):
-    """An assumption that holds in every ordinary run; the command line prints it only with --verbose."""
+    """An assumption that applies to every ordinary run; the command line prints it only with --verbose."""

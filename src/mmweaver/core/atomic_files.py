@@ -1,7 +1,7 @@
-"""Files and folders that are written completely or not at all: under a temporary name, synced to disk, then renamed.
+"""Atomic output: files and folders are written under a temporary name, synced to disk, then renamed.
 
-A kill at any instant leaves the old state or the new one; the temporary names of a dead process are removed by the next
-that writes there (`core.staging`). Nothing is renamed before its bytes are on the disk.
+A kill at any instant leaves either the old or the new state; temporary files of a dead process are removed by the next
+process that writes to the folder (`core.staging`). Nothing is renamed before its bytes are on disk.
 Reference: docs/decisions/writing-files.md.
 """
 
@@ -20,16 +20,16 @@ _written: list[Path] = []
 
 @contextmanager
 def atomic_file(path: Path) -> Iterator[Path]:
-    """A file that is written completely or not at all.
+    """Writes a file completely or not at all.
 
     Args:
-        path: The file; missing folders are made.
+        path: The file; missing parent folders are created.
 
     Yields:
-        A temporary path in the same folder; on success it is renamed to `path`, on any error it is removed.
+        A temporary path in the same folder; renamed to `path` on success, removed on any error.
 
     Raises:
-        InputError: where it cannot be written.
+        InputError: If it cannot be written.
     """
     with atomic_files(path) as (temporary,):
         yield temporary
@@ -37,16 +37,16 @@ def atomic_file(path: Path) -> Iterator[Path]:
 
 @contextmanager
 def atomic_files(*paths: Path) -> Iterator[list[Path]]:
-    """Several files that belong together: all are on the disk before the first is renamed.
+    """Writes several related files: all are on disk before the first is renamed.
 
     Args:
-        *paths: The files; missing folders are made, and removed again on an error.
+        *paths: The files; missing parent folders are created, and removed again on an error.
 
     Yields:
-        A temporary path of each, as `atomic_file` yields one.
+        One temporary path per file, as in `atomic_file`.
 
     Raises:
-        InputError: where one of them cannot be written.
+        InputError: If one of them cannot be written.
     """
     targets = [resolved(path) for path in paths]
     made: list[Path] = []
@@ -70,7 +70,7 @@ def atomic_files(*paths: Path) -> Iterator[list[Path]]:
 
 
 def _forget_sum(path: Path) -> None:
-    """Takes a file out of its folder's SHA256SUMS, before it is replaced by a file of another origin."""
+    """Removes a file from its folder's SHA256SUMS before it is replaced by one of another origin."""
     try:
         known = read_sums(path.parent)
     except InputError:
@@ -87,7 +87,7 @@ def _new_file(target: Path) -> Path:
 
 
 def _rename_all(staged: list[Path], targets: list[Path]) -> None:
-    """Renames one after the other; where one cannot be, those that were new are taken back."""
+    """Renames one file after another; on failure, removes those that did not exist before."""
     new: list[Path] = []
     try:
         for temporary, target in zip(staged, targets, strict=True):
@@ -108,21 +108,22 @@ def _rename_all(staged: list[Path], targets: list[Path]) -> None:
 
 @contextmanager
 def staged_folder(out: Path, *, overwrite: bool = False, keep_existing: bool = False) -> Iterator[Path]:
-    """A folder that is written completely or not at all, with the sha256 of its files.
+    """Writes a folder with the SHA-256 sums of its files, completely or not at all.
 
-    An `out` that exists is filled, so that it may be a mount point or a working directory: the complete files are moved
-    into it, and if that is interrupted, the next to write there moves the rest.
+    An existing `out` is filled in place, since it may be a mount point or a working directory: the complete files are
+    moved into it. If that is interrupted, the next process that writes there moves the remaining files.
 
     Args:
         out: The folder.
-        overwrite: Whether files may be replaced; those of other names stay.
-        keep_existing: Whether a folder that is there by then is kept, for content that is the same whoever writes it.
+        overwrite: Whether existing files may be replaced; files with other names are kept.
+        keep_existing: Whether a folder that another process created meanwhile is kept, for content that does not depend
+            on who writes it.
 
     Yields:
-        A temporary folder; on success it becomes `out`, on any error it is removed.
+        A temporary folder; becomes `out` on success, removed on any error.
 
     Raises:
-        InputError: where `check_output_folder` does, and where nothing can be written.
+        InputError: If `check_output_folder` rejects `out`, or it cannot be written.
     """
     target = resolved(out)
     if not keep_existing:
@@ -157,7 +158,7 @@ def staged_folder(out: Path, *, overwrite: bool = False, keep_existing: bool = F
 
 
 def _keep_sums(folder: Path, stage: Path) -> None:
-    """Adds the checksums of files of a folder that stay to those of new files."""
+    """Carries over the checksums of files that are kept in the folder."""
     try:
         known = read_sums(folder) or {}
     except InputError:
@@ -178,7 +179,7 @@ def _rename_new(stage: Path, target: Path, *, keep_existing: bool) -> None:
         sync(target.parent)
     except BaseException:
         if stage.parent.is_dir() and not stage.exists():
-            target.rename(stage)  # what is not on the disk is not reported as written, and not left either
+            target.rename(stage)  # not synced to disk: neither reported as written nor left behind
         raise
 
 
@@ -198,17 +199,17 @@ def _move_into(stage: Path, folder: Path) -> None:
 
 
 def create_once(path: Path, text: str) -> str:
-    """Writes a file unless there is one: of several processes the first decides.
+    """Writes a file unless it exists; among several processes the first one wins.
 
     Args:
         path: The file.
-        text: Its content, if it is new.
+        text: Content if the file does not exist yet.
 
     Returns:
-        What the file holds afterwards.
+        Content of the file afterwards.
 
     Raises:
-        InputError: where it cannot be written or read.
+        InputError: If it cannot be written or read.
     """
     with_others = path.parent
     try:
@@ -234,18 +235,26 @@ def create_once(path: Path, text: str) -> str:
 
 
 def _link(temporary: Path, path: Path) -> None:
-    """Gives a file its name unless another has it."""
+    """Links a temporary file to its final name unless that name is taken."""
     try:
         os.link(temporary, path)
     except FileExistsError:
         pass
-    except (PermissionError, NotImplementedError, AttributeError):  # a file system without links, as FAT
+    except (PermissionError, NotImplementedError, AttributeError):  # file systems without hard links, such as FAT
         if not path.exists():
             temporary.replace(path)
 
 
 def append_line(path: Path, line: str) -> None:
-    """Adds a line to a log. A kill or a full disk may leave half a line, which its reader must skip."""
+    """Appends a line to a log.
+
+    Args:
+        path: The file; missing parent folders are created.
+        line: Text without a line break. A kill or a full disk may leave half a line, which readers must skip.
+
+    Raises:
+        InputError: If it cannot be written.
+    """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with path.open("a", encoding="utf-8") as file:
@@ -255,24 +264,24 @@ def append_line(path: Path, line: str) -> None:
 
 
 def written() -> list[Path]:
-    """What this process has written completely, since `forget_written`; not what lies in a folder yet unfinished."""
+    """Paths that this process has completely written since `forget_written`, without those in unfinished folders."""
     return [path for path in _written if not any(is_staged(part) for part in path.parts)]
 
 
 def forget_written() -> None:
-    """Begins the list of `written` anew."""
+    """Clears the list that `written` returns."""
     _written.clear()
 
 
 def _make_folders(folder: Path) -> list[Path]:
-    """Makes a folder and those above it; returns the new ones, the innermost first."""
+    """Creates a folder and its parents; returns the new ones, innermost first."""
     missing = [place for place in (folder, *folder.parents) if not place.exists()]
     folder.mkdir(parents=True, exist_ok=True)
     return missing
 
 
 def _sync_names(folders: list[Path]) -> None:
-    """Brings the names of new folders to the disk, without which what is in them would be lost with them."""
+    """Syncs the directory entries of new folders; without them a crash would lose the folders' content."""
     for folder in folders:
         sync(folder.parent)
 

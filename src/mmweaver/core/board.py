@@ -1,6 +1,6 @@
-"""Board: what one radar board does to every signal, and its file, board.json.
+"""Board: hardware errors of one radar board that affect every signal, and its file, board.json.
 
-Fields, units and where each enters: docs/board.md. An ideal board has the defaults: it does nothing.
+docs/board.md lists fields, units and where each enters the signal chain. The defaults describe an ideal board.
 """
 
 import dataclasses
@@ -23,7 +23,7 @@ from mmweaver.core.safe_files.safe_text import MEGABYTE, parse_json, read_text
 BOARD_VERSION = 1
 MAX_BYTES = 4 * MEGABYTE
 MAX_TAPS, MAX_ANTENNAS, MAX_SHARES = 256, 256, 4096
-# the largest size of each number: a board beyond it is a mistake
+# largest magnitude of each number; anything beyond is a mistake
 LIMITS = {
     "if_gain_db": 120.0,
     "if_phase_deg": 36e3,
@@ -55,40 +55,44 @@ _none = functools.partial(np.zeros, 0)
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Board:
-    """The errors of one board, as they are in what it records. Raises InputError for an impossible board.
+    """Hardware errors of one board: IF response, channel imbalance, coupling, TX-RX leakage, drift, gain and noise.
 
-    Arrays may be empty: no such error. Antenna pairs are (tx, rx) in the radar's order, antennas tx * num_rx + rx.
+    An empty array means that the error is absent. Tables of antenna pairs are (tx, rx) in the radar's order; a virtual
+    antenna has index tx * num_rx + rx.
+
+    Raises:
+        InputError: If a number exceeds `LIMITS` or tables do not match each other.
     """
 
     name: str = "ideal"
-    made_from: str = ""  # which recordings, in words
-    notes: tuple[str, ...] = ()  # what could not be seen in them, and why
-    if_share: np.ndarray = field(default_factory=_none)  # (point,) IF frequency over the sample rate, rising, 0 to 1
-    if_gain_db: np.ndarray = field(default_factory=_none)  # (point,) of echoes and noise alike
+    made_from: str = ""  # description of the recordings
+    notes: tuple[str, ...] = ()  # parameters that the recordings do not determine, and why
+    if_share: np.ndarray = field(default_factory=_none)  # (point,) IF frequency / sample rate, increasing, 0 to 1
+    if_gain_db: np.ndarray = field(default_factory=_none)  # (point,) applies to echoes and noise
     if_phase_deg: np.ndarray = field(default_factory=_none)  # (point,)
     channel_gain_db: np.ndarray = field(default_factory=_none)  # (tx, rx)
     channel_phase_deg: np.ndarray = field(default_factory=_none)  # (tx, rx)
-    coupling_real: np.ndarray = field(default_factory=_none)  # (antenna, antenna): recorded = coupling @ alone
+    coupling_real: np.ndarray = field(default_factory=_none)  # (antenna, antenna): recorded = coupling @ uncoupled
     coupling_imag: np.ndarray = field(default_factory=_none)
-    leakage_range_m: np.ndarray = field(default_factory=_none)  # (tap,) range at which it appears
-    leakage_level_db: np.ndarray = field(default_factory=_none)  # (tap, tx, rx) received over transmitted power
+    leakage_range_m: np.ndarray = field(default_factory=_none)  # (tap,) apparent range
+    leakage_level_db: np.ndarray = field(default_factory=_none)  # (tap, tx, rx) received / transmitted power
     leakage_phase_deg: np.ndarray = field(default_factory=_none)  # (tap, tx, rx)
-    elevation_phase_deg: float = 0.0  # of transmitters above or below the first one's row
-    range_bias_m: float = 0.0  # that everything appears too far
-    first_chirp_amplitude_percent: float = 0.0  # by how much a frame's first chirp is stronger
+    elevation_phase_deg: float = 0.0  # phase offset of transmitters outside the first one's row
+    range_bias_m: float = 0.0  # measured minus true range
+    first_chirp_amplitude_percent: float = 0.0  # excess amplitude of the first chirp of each frame
     first_chirp_phase_mrad: float = 0.0
-    drift_ppm: float = 0.0  # rms over time of the carrier's relative error
-    gain_db: float = 0.0  # of echoes, over what the radar's power and gains give
+    drift_ppm: float = 0.0  # relative carrier frequency error, rms over time
+    gain_db: float = 0.0  # echo gain relative to the link budget of the radar
     noise_figure_db: float | None = None  # None keeps the radar's
-    element_spacing_m: float | None = None  # between antennas half a wavelength apart in the radar; None keeps that
-    cfar_threshold: float | None = None  # of a TI demo's CFAR in range, in its counts; None keeps the settings'
+    element_spacing_m: float | None = None  # true spacing of antennas nominally half a wavelength apart
+    cfar_threshold: float | None = None  # range CFAR of TI's demo, in its counts; None keeps the settings'
 
     def __post_init__(self) -> None:
         self._check_sizes()
         self._check_shapes()
 
     def _check_sizes(self) -> None:
-        """Raises InputError for a number beyond its limit; rounds tables to what their file holds."""
+        """Checks all numbers against `LIMITS` and rounds tables to the precision of board.json."""
         for each in dataclasses.fields(self):
             value = getattr(self, each.name)
             if each.name in LIMITS and value is not None:
@@ -99,7 +103,7 @@ class Board:
                     object.__setattr__(self, each.name, np.round(array, 6))
 
     def _check_shapes(self) -> None:
-        """Raises InputError for tables that do not go together."""
+        """Checks that the shapes of related tables agree."""
         share, taps = self.if_share, self.leakage_range_m
         for names in SAME_SHAPE:
             if len({getattr(self, name).shape for name in names}) > 1:
@@ -122,7 +126,11 @@ class Board:
 
     @property
     def pairs(self) -> tuple[int, int] | None:
-        """(tx, rx) of its tables; None where it has none. Raises InputError where they differ."""
+        """Number of transmitters and receivers of the tables, (tx, rx); None without tables.
+
+        Raises:
+            InputError: If the tables disagree.
+        """
         found = {table.shape[-2:] for table in (self.channel_gain_db, self.leakage_level_db) if table.size}
         if len(found) > 1 or any(len(shape) != 2 for shape in found):
             raise self._impossible("channel_gain_db and leakage_level_db must be tables of the same (tx, rx)")
@@ -135,11 +143,18 @@ class Board:
 
     @cached_property
     def is_ideal(self) -> bool:
-        """Whether it does nothing."""
+        """Whether the board leaves every signal unchanged."""
         return set(self.to_values()) <= {"board_version", "name", "made_from", "notes"}
 
     def check_fits(self, config: RadarConfig) -> None:
-        """Raises InputError for a radar with other antennas."""
+        """Checks that the tables match a radar's antennas.
+
+        Args:
+            config: The radar.
+
+        Raises:
+            InputError: If the number of transmitters, receivers or antennas differs.
+        """
         pairs, antennas = self.pairs, len(self.coupling_real)
         own = config.num_tx, config.num_rx
         if pairs is not None and pairs != own:
@@ -154,7 +169,7 @@ class Board:
 
     # files ----------------------------------------------------------------------------------------------------------
     def to_values(self) -> dict[str, Any]:
-        """The content of the JSON: fields that are not the default."""
+        """Fields that differ from their default, as plain JSON values, with the schema version."""
         values: dict[str, Any] = {"board_version": BOARD_VERSION}
         ideal = Board()
         for each in dataclasses.fields(self):
@@ -167,23 +182,34 @@ class Board:
         return values
 
     def to_json(self) -> str:
-        """JSON, one line per field; `from_json` restores the same Board."""
+        """Serialises the board as JSON, one line per field; `from_json` restores an equal Board."""
         lines = [f"  {json.dumps(name)}: {json.dumps(value)}" for name, value in self.to_values().items()]
         return "{\n" + ",\n".join(lines) + "\n}\n"
 
     @cached_property
     def digest(self) -> str:
-        """Of its content: equal boards have equal digests."""
+        """SHA-256 of the content, hexadecimal; equal boards have equal digests."""
         return hashlib.sha256(self.to_json().encode()).hexdigest()
 
     def meta(self) -> dict[str, Any]:
-        """The entry of meta.json: the name and all single numbers; tables are in board.json."""
+        """Entry for meta.json: name and scalar fields; the tables are in board.json."""
         tables = {each.name for each in dataclasses.fields(self) if isinstance(getattr(self, each.name), np.ndarray)}
         return {name: value for name, value in self.to_values().items() if name not in tables}
 
     @classmethod
     def from_json(cls, text: str, place: str = "the board file") -> "Board":
-        """Reads the JSON of `to_json`. Raises InputError for anything else; an unknown key is an error."""
+        """Parses the output of `to_json`.
+
+        Args:
+            text: JSON text.
+            place: Name of the source for error messages.
+
+        Returns:
+            The board.
+
+        Raises:
+            InputError: If the text is not a board file, has another version, or contains an unknown key.
+        """
         values = parse_json(text, place)
         if not isinstance(values, dict) or "board_version" not in values:
             raise InputError(f"{place} is no board file (it has no board_version); mmweaver calibrate makes one")
@@ -193,11 +219,28 @@ class Board:
         return cls(**record_fields(cls, values, place))
 
     def save(self, path: Path) -> None:
-        """Writes board.json, whole or not at all."""
+        """Writes board.json atomically.
+
+        Args:
+            path: The file.
+
+        Raises:
+            InputError: If it cannot be written.
+        """
         with atomic_file(path) as partial:
             partial.write_text(self.to_json(), encoding="utf-8")
 
 
 def read_board(path: Path | str) -> Board:
-    """The board of a board.json. Raises InputError."""
+    """Reads a board.json.
+
+    Args:
+        path: The file, at most 4 MB.
+
+    Returns:
+        The board.
+
+    Raises:
+        InputError: If the file is missing, unreadable or not a board.
+    """
     return Board.from_json(read_text(path, max_bytes=MAX_BYTES), str(path))

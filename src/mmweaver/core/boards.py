@@ -1,6 +1,6 @@
-"""Boards by name: ideal, a file, or a typical one, sampled from the spread that recordings show.
+"""Boards by name: ideal, from a file, or typical, i.e. sampled from the spread measured in recordings.
 
-Where each figure of the spread comes from: docs/board.md.
+docs/board.md documents the source of each figure.
 """
 
 from dataclasses import replace
@@ -17,17 +17,17 @@ from mmweaver.core.seeding import stream
 
 IDEAL_BOARD = Board()
 MAX_NUMBER = 2**31 - 1
-MAX_BAND_HZ = 10e9  # of one board
-# spread between boards: mean and standard deviation, or lowest and highest
+MAX_BAND_HZ = 10e9  # a wider band is not that of a single board
+# spread between boards: lowest and highest, unless a standard deviation is stated
 IF_END_DB, IF_NEAR_DB = (-9.0, -4.5), (-5.0, -1.0)  # of power: last 5 % of the band, range bins 2 to 6
 NEAR_SHAPE = ((0, 1.0), (2, 1.0), (6, 0.95), (10, 0.6), (16, 0.35), (30, 0.0))  # range bin, share of IF_NEAR_DB
 END_SHAPE = ((0.89, 0.0), (0.905, -1.0), (0.92, -3.0), (0.935, -6.0), (0.955, -9.3))  # share of the band, dB
-GAIN_DB = (-8.0, -4.0)  # of echoes over noise, less than transmit power, antennas and noise figure promise: losses
-CHANNEL_GAIN_DB, CHANNEL_PHASE_DEG = 0.4, (4.0, 14.0)  # standard deviations of each transmitter's and each receiver's
-LEAKAGE_OVER_NOISE_DB = (33.0, 41.0)  # of a chirp's range bin; with the skirt 2 dB more
-LEAKAGE_PAIRS_DB = 4.5  # standard deviation over pairs: 10 to 20 dB from the weakest of 12 to the strongest
-SKIRT_END_M = (0.4, 1.5)  # where it has fallen to the noise of a frame's cell
-# of real samples (one board), with the converter's offset
+GAIN_DB = (-8.0, -4.0)  # losses: echo SNR relative to the link budget
+CHANNEL_GAIN_DB, CHANNEL_PHASE_DEG = 0.4, (4.0, 14.0)  # standard deviations per transmitter and per receiver
+LEAKAGE_OVER_NOISE_DB = (33.0, 41.0)  # in the range bin of one chirp; 2 dB more including the skirt
+LEAKAGE_PAIRS_DB = 4.5  # standard deviation over pairs: 10 to 20 dB between the weakest and strongest of 12
+SKIRT_END_M = (0.4, 1.5)  # range at which the skirt reaches the noise floor of a range-Doppler cell
+# real-valued samples (one board), including the ADC's DC offset
 REAL_LEAKAGE_OVER_NOISE_DB, REAL_SKIRT_END_M = (50.0, 58.0), (0.15, 0.3)
 ELEVATION_PHASE_DEG = (4.0, 12.0)
 RANGE_BIAS_M = (0.0, 0.10)
@@ -36,18 +36,18 @@ DRIFT_PPM = (0.3, 0.9)
 
 
 def find_board(name: str | Path | Board, config: RadarConfig, seed: int = 0) -> Board:
-    """A board by its name.
+    """Resolves a board by name.
 
     Args:
-        name: "ideal", "typical" (sampled by the seed), "typical:N", a board.json, or a Board.
-        config: The radar that it belongs to.
+        name: "ideal", "typical" (sampled with `seed`), "typical:N", path of a board.json, or a Board.
+        config: The radar to which it belongs.
         seed: Seed of "typical".
 
     Returns:
         The board.
 
     Raises:
-        InputError: for another name, a file that is no board, and a board that does not fit the radar.
+        InputError: If the name is unknown, the file is not a board, or the board does not fit the radar.
     """
     if isinstance(name, Board):
         board = name
@@ -64,7 +64,14 @@ def find_board(name: str | Path | Board, config: RadarConfig, seed: int = 0) -> 
 
 
 def compensated(board: Board) -> Board:
-    """The board without what a radar's own calibration takes away: antenna errors and range bias."""
+    """Removes the errors that a radar's own calibration corrects: channel imbalance, coupling and range bias.
+
+    Args:
+        board: The board.
+
+    Returns:
+        A copy without these errors.
+    """
     none = np.zeros(0)
     return replace(
         board,
@@ -88,14 +95,14 @@ def _number(name: str, seed: int) -> int:
 
 @lru_cache(maxsize=16)
 def typical_board(config: RadarConfig, number: int) -> Board:
-    """A board with errors as recordings of several boards show them.
+    """Samples a board from the spread of hardware errors measured on several boards (docs/board.md).
 
     Args:
         config: The radar.
         number: Number of the board; equal numbers give equal boards.
 
     Returns:
-        The board; its figures and where they come from are in docs/board.md.
+        The board.
     """
     rng = stream(number, "typical board")
 
@@ -107,7 +114,7 @@ def typical_board(config: RadarConfig, number: int) -> Board:
     gain_db = rng.normal(0, CHANNEL_GAIN_DB, (tx, 1)) + rng.normal(0, CHANNEL_GAIN_DB, (1, rx))
     phase_deg = between(CHANNEL_PHASE_DEG) * (rng.normal(size=(tx, 1)) + rng.normal(size=(1, rx)))
     sign = 1 if rng.random() < 0.5 else -1
-    starts = float(config.complex_samples)  # real samples (one board) show no first chirp apart, and no loss
+    starts = float(config.complex_samples)  # real-valued samples (one board): no first-chirp error, no loss
     level_db, end_m = LEAKAGE_OVER_NOISE_DB, SKIRT_END_M
     if not config.complex_samples:
         level_db, end_m = REAL_LEAKAGE_OVER_NOISE_DB, REAL_SKIRT_END_M
@@ -134,16 +141,16 @@ def typical_board(config: RadarConfig, number: int) -> Board:
 
 
 def _spacing_m(config: RadarConfig) -> float | None:
-    """Half a wavelength at the middle of the board's band, where the radar knows that."""
+    """Half a wavelength at the centre of the board's band, if the radar states one."""
     low_hz, high_hz = config.frequency_limits_hz
     return SPEED_OF_LIGHT_MPS / (low_hz + high_hz) if high_hz - low_hz < MAX_BAND_HZ else None
 
 
 def _filters(config: RadarConfig, near_db: float, end_db: float) -> tuple[np.ndarray, np.ndarray]:
-    """High-pass filter near range 0 and low-pass filter at the end of the band: shares of the sample rate, gains in dB.
+    """IF high-pass near range 0 and low-pass at the band edge: IF frequency / sample rate, and gain in dB.
 
-    Both with the shape that two boards show: the low-pass filter falls to -9 dB at 95 % of the band, where its
-    neighbour begins to fold in. Real samples (one board) show neither, only a slow fall.
+    Shapes as measured on two boards: the low-pass falls to -9 dB at 95 % of the band, where aliasing sets in.
+    Real-valued samples (one board) show neither, only a slow roll-off.
     """
     if not config.complex_samples:
         return np.array([0.0, 0.25, 0.5]), np.array([0.0, 0.0, 0.3 * end_db])
@@ -158,9 +165,9 @@ def _filters(config: RadarConfig, near_db: float, end_db: float) -> tuple[np.nda
 def _leakage(
     config: RadarConfig, rng: np.random.Generator, level_db: float, end_m: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Ranges (tap,), levels (tap, tx, rx) in dB of the transmitted power, and phases in degrees.
+    """Ranges (tap,), levels (tap, tx, rx) in dB relative to the transmitted power, and phases in degrees.
 
-    The skirt falls exponentially and reaches the noise of a frame's cell at `end_m`.
+    The skirt falls exponentially and reaches the noise floor of a range-Doppler cell at `end_m`.
     """
     step_m = config.range_resolution_m
     taps = np.arange(max(1, min(40, round(end_m / step_m)))) * step_m
@@ -171,5 +178,5 @@ def _leakage(
     pairs_db = rng.normal(0, LEAKAGE_PAIRS_DB, shape[1:])
     pairs_db -= 10 * np.log10((10 ** (pairs_db / 10)).mean())
     levels = a_chirp_dbm - config.tx_power_dbm + level_db - fall_db[:, None, None] + pairs_db
-    levels = levels + np.where(taps > 0, -6.0, 0.0)[:, None, None]  # the skirt is of echoes of its own
+    levels = levels + np.where(taps > 0, -6.0, 0.0)[:, None, None]  # the skirt consists of separate reflections
     return taps, levels, rng.uniform(-180, 180, shape)

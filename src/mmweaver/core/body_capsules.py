@@ -1,7 +1,7 @@
-"""The human body as capsules around the bones of the 22-joint skeleton: the one table of its shape.
+"""The human body as capsules around the bones of the 22-joint skeleton: the single table of body shape.
 
-The radar's skin points and occlusion, the separation of several people and the collision test of a placed motion all
-derive their thicknesses from `CAPSULES`. Sizes are those of a person of `REFERENCE_HEIGHT_M` and scale with height.
+Skin points and occlusion, separation of people and collision tests of placed motions all take their radii from
+`CAPSULES`. Sizes apply to a person of `REFERENCE_HEIGHT_M` and scale with height.
 """
 
 from dataclasses import dataclass
@@ -16,15 +16,15 @@ Array = np.ndarray
 REFERENCE_HEIGHT_M = 1.75
 TRUNK_WIDTH_PER_DEPTH = 1.25  # the trunk's cross-section is an ellipse, wider than deep
 TRUNK = ("pelvis", "spine1", "spine2", "spine3")  # start joints of the trunk's capsules
-# A capsule that ends at its own start continues the bone before it: the hand the forearm, the crown the neck.
+# A capsule whose start and end are the same joint continues the preceding bone: hand - forearm, crown - neck.
 CONTINUED_FROM = {"head": "neck", "left_wrist": "left_elbow", "right_wrist": "right_elbow"}
 HULL_CORNERS = 6  # corners of a ring of the low-poly hull
 
 _PAIRED = {"hip", "knee", "ankle", "foot", "collar", "shoulder", "elbow", "wrist"}
 _DOWN, _UP, _FRONT = (0.0, 0.0, -1.0), (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)
 _ARM = (0.45, 0.45, -0.77)  # the opposite, behind and above the other shoulder, is out of reach
-_LUMP_LENGTH_M = 0.02  # of a capsule that ends at its own start, before it is extended
-# Typical bone lengths, by the joint at the far end.
+_LUMP_LENGTH_M = 0.02  # length before extension if start and end are the same joint
+# Typical bone lengths by distal joint.
 _BONE_LENGTH_M = {
     "spine1": 0.12,
     "spine2": 0.13,
@@ -42,35 +42,41 @@ _BONE_LENGTH_M = {
 
 @dataclass(frozen=True, kw_only=True)
 class Capsule:
-    """A part of the body from joint to joint (or past it), with a radius at either end; sizes at reference height."""
+    """A body part from joint to joint (or beyond), with a radius at either end; sizes at reference height."""
 
     start: str
     end: str
     start_radius_m: float
     end_radius_m: float
-    rest: tuple[float, float, float]  # its usual direction in the trunk's frame (right, front, up)
-    extend_m: float = 0.0  # past the end joint: hands, toes, the crown of the head
+    rest: tuple[float, float, float]  # rest direction in the trunk's frame (right, front, up)
+    extend_m: float = 0.0  # beyond the end joint: hands, toes, crown of the head
 
     @property
     def is_lump(self) -> bool:
-        """Whether it surrounds a single joint and continues no bone: the hips."""
+        """Whether it surrounds a single joint without continuing a bone (the hips)."""
         return self.start == self.end and self.start not in CONTINUED_FROM
 
     @property
     def typical_length_m(self) -> float:
-        """Axis length of a person of reference height; posed capsules follow their joints instead."""
+        """Axis length in metres at reference height; posed capsules follow their joints instead."""
         if self.start == self.end:
             return (0.05 if self.start == "head" else _LUMP_LENGTH_M) + self.extend_m
         return _BONE_LENGTH_M[part_of(self.end)] + self.extend_m
 
     @property
     def width_per_depth(self) -> float:
-        """How much wider than deep its cross-section is."""
+        """Ratio of width to depth of the elliptic cross-section."""
         return TRUNK_WIDTH_PER_DEPTH if self.start in TRUNK else 1.0
 
 
 def part_of(joint_name: str) -> str:
-    """A joint's name without its side.
+    """Strips the side from a joint name.
+
+    Args:
+        joint_name: Name in `skeleton.JOINT_NAMES`.
+
+    Returns:
+        Name without "left_" or "right_".
 
     >>> part_of("left_knee"), part_of("neck")
     ('knee', 'neck')
@@ -115,7 +121,14 @@ _BY_ENDS = {(capsule.start, capsule.end): capsule for capsule in CAPSULES}
 
 
 def capsule_between(start: str, end: str) -> Capsule:
-    """The capsule of a bone, or of a joint where both names are the same.
+    """Looks up the capsule of a bone, or of a single joint if both names are equal.
+
+    Args:
+        start: Proximal joint.
+        end: Distal joint.
+
+    Returns:
+        The capsule at reference height.
 
     >>> capsule_between("left_knee", "left_ankle").start_radius_m
     0.055
@@ -124,29 +137,37 @@ def capsule_between(start: str, end: str) -> Capsule:
 
 
 def scale_of(height_m: float) -> float:
-    """Factor from the sizes in `CAPSULES` to those of a person of `height_m`."""
+    """Scale from the sizes in `CAPSULES` to a person of `height_m`."""
     return height_m / REFERENCE_HEIGHT_M
 
 
 def radii_m(height_m: float, girth: float = 1.0) -> Float[Array, "capsule 2"]:
-    """Radii at start and end of every capsule, in metres, half the depth where it is wider than deep.
+    """Radii of all capsules; half the depth where the cross-section is elliptic.
 
-    `girth` is the body's thickness relative to the average one of its height; the head's is always average.
+    Args:
+        height_m: Body height in metres.
+        girth: Thickness relative to the average body of this height; the head always has average size. Default: 1.
+
+    Returns:
+        Radii at start and end in metres, (capsule, 2).
     """
     wider = np.array([1.0 if "head" in (c.start, c.end) else girth for c in CAPSULES])
     return np.array([(c.start_radius_m, c.end_radius_m) for c in CAPSULES]) * scale_of(height_m) * wider[:, None]
 
 
 def widths_per_depth() -> Float[Array, " capsule"]:
-    """How much wider than deep each capsule's cross-section is."""
+    """Ratio of width to depth of each capsule's cross-section, (capsule,)."""
     return np.array([capsule.width_per_depth for capsule in CAPSULES])
 
 
 @dataclass(frozen=True, kw_only=True)
 class PosedCapsules:
-    """Axes of all capsules at some times, in the frame of the joints.
+    """Axes of all capsules over time, in the frame of the joints.
 
-    A rotation's columns are the capsule's right, front and along directions. `axis_m` points from start to end.
+    Attributes:
+        start_m: Start of each axis, metres.
+        axis_m: Vector from start to end, metres.
+        rotation: Columns are the capsule's right, front and axial directions.
     """
 
     start_m: Float[Array, "time capsule 3"]
@@ -155,11 +176,14 @@ class PosedCapsules:
 
 
 def pose_capsules(joints_m: Float[Array, "time 22 3"], height_m: float) -> PosedCapsules:
-    """All capsules of a person.
+    """Places the capsules on a moving skeleton.
 
     Args:
-        joints_m: (time, 22, 3).
-        height_m: of the person.
+        joints_m: Joints in metres, (time, 22, 3).
+        height_m: Body height in metres.
+
+    Returns:
+        Capsule axes and orientations in the frame of the joints.
     """
     trunk = _trunk_rotation(joints_m)
     start, end = joints_m[:, _START], joints_m[:, _END]
@@ -177,15 +201,15 @@ def pose_capsules(joints_m: Float[Array, "time 22 3"], height_m: float) -> Posed
 def hull(
     posed: PosedCapsules, height_m: float, girth: float = 1.0
 ) -> tuple[Float[Array, "time vertex 3"], Int[Array, "face 3"]]:
-    """Low-poly hull of all capsules.
+    """Builds a low-poly hull of all capsules.
 
     Args:
-        posed: capsules (time, capsule).
-        height_m: of the person.
-        girth: thickness relative to the average body of that height.
+        posed: Capsules, (time, capsule).
+        height_m: Body height in metres.
+        girth: Thickness relative to the average body of this height. Default: 1.
 
     Returns:
-        Vertices in m for each time, and the faces that they share.
+        Vertices in metres, (time, vertex, 3), and faces common to all times, (face, 3).
     """
     angles = np.arange(HULL_CORNERS) * 2 * np.pi / HULL_CORNERS
     circle = np.stack([np.cos(angles), np.sin(angles), np.zeros(HULL_CORNERS)], -1)
@@ -203,7 +227,7 @@ def hull(
 
 
 def _hull_faces(count: int) -> Int[Array, "face 3"]:
-    """Faces of `count` hulls of 2 rings and 2 tips each."""
+    """Faces of `count` hulls with two rings and two tips each."""
     a = np.arange(HULL_CORNERS)
     b = (a + 1) % HULL_CORNERS
     sides = np.concatenate(
@@ -216,7 +240,7 @@ def _hull_faces(count: int) -> Int[Array, "face 3"]:
 
 
 def _trunk_rotation(joints_m: Float[Array, "time 22 3"]) -> Float[Array, "time 3 3"]:
-    """Rotations whose columns are right, front and up of the trunk."""
+    """Rotations whose columns are the trunk's right, front and up directions."""
     right = joints_m[:, joint("right_hip")] - joints_m[:, joint("left_hip")]
     right = right + joints_m[:, joint("right_shoulder")] - joints_m[:, joint("left_shoulder")]
     up = unit(joints_m[:, joint("neck")] - joints_m[:, joint("pelvis")])
@@ -225,7 +249,7 @@ def _trunk_rotation(joints_m: Float[Array, "time 22 3"]) -> Float[Array, "time 3
 
 
 def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """The cross product (..., 3), equal to numpy's own and five times faster for few vectors."""
+    """Cross product (..., 3); equals np.cross and is five times as fast for few vectors."""
     out = np.empty(np.broadcast_shapes(a.shape, b.shape))
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         out[..., i] = a[..., j] * b[..., k] - a[..., k] * b[..., j]
@@ -233,7 +257,7 @@ def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _rest_frame(rest: Float[Array, "3"]) -> Float[Array, "3 3"]:
-    """A frame in the trunk whose third column is the direction of a capsule at rest."""
+    """Frame in the trunk whose third column is a capsule's rest direction."""
     rest = unit(rest)
     not_along = np.array([0.0, 1.0, 0.0]) if abs(rest[1]) < 0.9 else np.array([0.0, 0.0, 1.0])
     across = unit(_cross(not_along, rest))
@@ -243,9 +267,9 @@ def _rest_frame(rest: Float[Array, "3"]) -> Float[Array, "3 3"]:
 def _shortest_rotations(
     trunk: Float[Array, "time 3 3"], along: Float[Array, "time capsule 3"]
 ) -> Float[Array, "time capsule 3 3"]:
-    """Rotations whose third column is `along`, reached by the shortest rotation from the rest direction in the trunk.
+    """Rotations with third column `along`, reached by the shortest rotation from the rest direction in the trunk.
 
-    The shortest rotation keeps skin from spinning about its bone, which a radar would see as velocity.
+    The shortest rotation keeps skin from spinning about its bone, which would add spurious Doppler.
     """
     start = trunk[:, None] @ _REST_FRAMES
     old = start[..., 2]
@@ -260,7 +284,7 @@ def _shortest_rotations(
 
 _REST_FRAMES = np.stack([_rest_frame(np.asarray(one.rest)) for one in CAPSULES])
 _START, _END = [joint(one.start) for one in CAPSULES], [joint(one.end) for one in CAPSULES]
-# The joints between which a capsule's direction is taken: its own, or those of the bone that it continues.
+# Joints that define a capsule's direction: its own, or those of the bone it continues.
 _FROM = [joint(CONTINUED_FROM.get(one.start, one.start)) for one in CAPSULES]
 _TO = [joint(one.start if one.start in CONTINUED_FROM else one.end) for one in CAPSULES]
 _LUMPS = [number for number, one in enumerate(CAPSULES) if one.is_lump]

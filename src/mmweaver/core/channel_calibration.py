@@ -1,4 +1,4 @@
-"""The channel errors that a board's firmware compensates: a factor for each antenna pair, and a range bias."""
+"""Channel calibration as applied by a board's firmware: one complex factor per antenna pair, and a range bias."""
 
 from dataclasses import dataclass, replace
 
@@ -10,10 +10,13 @@ from mmweaver.core.records import AdcCube
 
 @dataclass(frozen=True, kw_only=True)
 class ChannelCalibration:
-    """Factors (tx, rx) by which recorded samples are multiplied, and the range that a board measures too much.
+    """Factors by which the firmware multiplies recorded samples, and the range bias of the board.
 
-    `turns_receivers`: the factors undo the receivers that the board feeds from the other side, too (rx_inverted),
-    which samples in an `AdcCube` already are.
+    Attributes:
+        factors: Complex factors, (tx, rx).
+        range_bias_m: Measured minus true range in metres.
+        turns_receivers: Whether the factors also correct receivers with inverted feed (`rx_inverted`), which samples in
+            an `AdcCube` already have corrected. Default: False.
     """
 
     factors: np.ndarray
@@ -21,11 +24,25 @@ class ChannelCalibration:
     turns_receivers: bool = False
 
     def compensated(self, adc: AdcCube) -> AdcCube:
-        """Recorded samples without the board's errors, as its firmware would have them."""
+        """Corrects recorded samples as the firmware does.
+
+        Args:
+            adc: Recorded samples.
+
+        Returns:
+            Samples without channel errors and range bias.
+        """
         return self._applied(adc, self.factors, -self.range_bias_m)
 
     def recorded(self, adc: AdcCube) -> AdcCube:
-        """Ideal samples as this board would record them; `compensated` takes the errors away again."""
+        """Applies the board's errors to ideal samples; inverse of `compensated`.
+
+        Args:
+            adc: Ideal samples.
+
+        Returns:
+            Samples as this board would record them.
+        """
         return self._applied(adc, 1 / self.factors, self.range_bias_m)
 
     def _applied(self, adc: AdcCube, factors: np.ndarray, farther_m: float) -> AdcCube:

@@ -1,10 +1,10 @@
-"""SHA256SUMS: the sha256 of every file of a folder, as `sha256sum` writes it, so that damage is noticed.
+"""SHA256SUMS: the SHA-256 of every file of a folder in the format of `sha256sum`, to detect damage.
 
     # mmweaver; check with: mmweaver verify DIR, or sha256sum -c SHA256SUMS
     9f86d081...  radar.npz
 
-A file named there is checked before it is used (`check_file`), once a process unless it has changed since. Folders of
-other origin, and files that are not named, are read as they are. Reference: docs/decisions/writing-files.md.
+A listed file is checked before use (`check_file`), once per process unless it has changed since. Folders of other
+origin and unlisted files are read unchecked. Reference: docs/decisions/writing-files.md.
 """
 
 import hashlib
@@ -18,12 +18,12 @@ from mmweaver.core.safe_files.regular_files import foreign_errors, open_regular,
 SUMS_FILE = "SHA256SUMS"
 FIRST_LINE = "# mmweaver; check with: mmweaver verify DIR, or sha256sum -c SHA256SUMS"
 MAX_SUMS_BYTES = 64 * 2**20  # bytes
-_checked: dict[str, tuple[int, int, int]] = {}  # by path: inode, size and time of change when it was right
+_checked: dict[str, tuple[int, int, int]] = {}  # by path and digest: inode, size and modification time when checked
 
 
 @dataclass(frozen=True, kw_only=True)
 class Damage:
-    """A file that is not as it was written."""
+    """A file whose content does not match its checksum."""
 
     file: Path
     what: str  # "is missing" or "is not as it was written"
@@ -33,18 +33,28 @@ class Damage:
 
 
 def sha256_of_file(path: Path) -> str:
-    """The sha256 of a regular file, hexadecimal. Raises InputError where it cannot be read."""
+    """SHA-256 of a regular file.
+
+    Args:
+        path: The file.
+
+    Returns:
+        Hexadecimal digest.
+
+    Raises:
+        InputError: If it cannot be read.
+    """
     with open_regular(path) as stream, foreign_errors(path, "unreadable ({reason})"):
         return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
 def write_sums(folder: Path, *, names: tuple[str, ...] | None = None, target: Path | None = None) -> None:
-    """Writes SHA256SUMS of a folder.
+    """Writes the SHA256SUMS of a folder.
 
     Args:
         folder: The folder.
-        names: Entries that are listed, with all files below them. Default: all.
-        target: File that is written. Default: SHA256SUMS of the folder.
+        names: Entries to list, including all files below them. Default: all.
+        target: Output file. Default: SHA256SUMS in `folder`.
     """
     roots = [folder / name for name in names] if names is not None else [folder]
     files = [root for root in roots if root.is_file()]
@@ -55,21 +65,28 @@ def write_sums(folder: Path, *, names: tuple[str, ...] | None = None, target: Pa
 
 
 def sums_text(sums: dict[str, str]) -> str:
-    """The content of SHA256SUMS."""
+    """Formats checksums as the content of SHA256SUMS.
+
+    Args:
+        sums: Hexadecimal SHA-256 by file name.
+
+    Returns:
+        Text with the header line.
+    """
     return "".join(f"{line}\n" for line in (FIRST_LINE, *(f"{digest}  {name}" for name, digest in sums.items())))
 
 
 def read_sums(folder: Path) -> dict[str, str] | None:
-    """The checksums of a folder.
+    """Reads the checksums of a folder.
 
     Args:
         folder: The folder.
 
     Returns:
-        {name: sha256}; None where it has none of ours.
+        Hexadecimal SHA-256 by file name; None if the folder has no SHA256SUMS written by mmWeaver.
 
     Raises:
-        InputError: where SHA256SUMS is damaged.
+        InputError: If SHA256SUMS is damaged.
     """
     file = folder / SUMS_FILE
     try:
@@ -80,7 +97,7 @@ def read_sums(folder: Path) -> dict[str, str] | None:
         raise InputError(f"cannot read {file}: {error.strerror or error}") from None
     first, *lines = data.decode("utf-8", errors="replace").split("\n")
     if first != FIRST_LINE:
-        # nearly ours is ours with a flipped bit
+        # a first line that nearly matches is ours with a flipped bit
         return _damaged(file) if any(word in data[:100] for word in (b"# mmweaver", b"mmweaver verify")) else None
     if lines[-1:] != [""]:
         return _damaged(file)
@@ -104,14 +121,14 @@ def _damaged(file: Path) -> dict[str, str]:
 
 
 def check_file(path: Path, *, folder: Path | None = None) -> None:
-    """Checks a file against the SHA256SUMS of its folder; files that are not listed pass.
+    """Checks a file against the SHA256SUMS of its folder; unlisted files pass.
 
     Args:
         path: The file.
-        folder: Folder above it that has the checksums. Default: its own.
+        folder: Parent folder that has the checksums. Default: the file's own folder.
 
     Raises:
-        InputError: where the file has changed or is missing.
+        InputError: If the file has changed or is missing.
     """
     folder = path.parent if folder is None else folder
     sums = read_sums(folder)
@@ -131,12 +148,12 @@ def damage_of_file(folder: Path, name: str, expected: str, *, use_cache: bool = 
 
     Args:
         folder: Folder of the checksums.
-        name: The file's name there.
-        expected: Its sha256, hexadecimal.
-        use_cache: Whether a file is not read again that was right before and has not changed since.
+        name: Name of the file relative to `folder`.
+        expected: SHA-256, hexadecimal.
+        use_cache: Whether a file that was intact and has not changed since is not read again. Default: True.
 
     Returns:
-        What is wrong with it; None where nothing is.
+        The damage, or None if the file is intact.
     """
     file = folder / name
     try:
@@ -158,7 +175,17 @@ def damage_of_file(folder: Path, name: str, expected: str, *, use_cache: bool = 
 
 
 def damages(folder: Path) -> list[Damage]:
-    """All files of a folder that are not as they were written; without SHA256SUMS none is known."""
+    """Checks all files listed in a folder's SHA256SUMS.
+
+    Args:
+        folder: The folder.
+
+    Returns:
+        Damaged or missing files; empty without SHA256SUMS.
+
+    Raises:
+        InputError: If SHA256SUMS itself is damaged.
+    """
     sums = read_sums(folder) or {}
     found = (damage_of_file(folder, name, expected, use_cache=False) for name, expected in sums.items())
     return [damage for damage in found if damage is not None]

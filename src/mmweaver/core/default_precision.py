@@ -1,4 +1,4 @@
-"""Torch's default type while mmWeaver computes, whatever a caller has set for the process."""
+"""Torch's default dtype during computation, independent of what the caller has set for the process."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def single_precision() -> Iterator[None]:
-    """float32 as torch's default type inside; `torch.set_default_dtype` of the caller holds again afterwards."""
+    """Context with float32 as torch's default dtype; restores the caller's default on exit."""
     import torch
 
     before = torch.get_default_dtype()

@@ -1,4 +1,4 @@
-"""The errors for bad input, which the user can correct."""
+"""Errors caused by bad input, which the user can correct."""
 
 import contextlib
 import re
@@ -10,10 +10,10 @@ _LONG_WORD = re.compile(r"\S{121,}")
 
 
 class InputError(ValueError):
-    """Bad input: one line on what was wrong and what to do about it, of at most 500 characters.
+    """Bad input: one line of at most 500 characters stating what was wrong and what to do.
 
-    Line breaks and control characters of a value that is quoted are made harmless, and long values are shortened. The
-    command line prints the line as it is and exits with status 2; anything else that is raised is a bug.
+    Line breaks and control characters of quoted values are escaped, and long values are shortened. The command line
+    prints the line as is and exits with status 2; any other exception is a bug.
     """
 
     def __init__(self, message: object = ""):
@@ -22,7 +22,14 @@ class InputError(ValueError):
 
 @contextlib.contextmanager
 def file_named(path: object) -> Iterator[None]:
-    """Puts a file's name before the InputErrors raised inside, where they lack it."""
+    """Context that prefixes InputErrors raised inside with a file name unless they start with it.
+
+    Args:
+        path: The file.
+
+    Raises:
+        InputError: With the prefixed message.
+    """
     try:
         yield
     except InputError as error:
@@ -31,10 +38,10 @@ def file_named(path: object) -> Iterator[None]:
 
 
 class NoRoomError(InputError):
-    """A motion finds no room in a photo; `recovery_options` says what would help.
+    """A motion does not fit into a room; `recovery_options` lists what would help.
 
-    Keys, where known: `nearest_place_m` (x, y), `range_m` (near, far) of the window that it needs, None where the radar
-    cannot have it, `radars` (names of presets that have such a window).
+    Keys, where known: `nearest_place_m` (x, y); `range_m`, the (near, far) range window that place needs, None if the
+    radar cannot provide it; `radars`, names of presets that can.
     """
 
     def __init__(self, message: str, *, recovery_options: Mapping[str, Any] | None = None) -> None:
@@ -55,7 +62,14 @@ def _in_words(recovery_options: Mapping[str, Any]) -> str:
 
 
 def one_line(text: str, limit: int = MAX_CHARACTERS) -> str:
-    r"""A text as one printable line; long words are shortened first, then the middle is left out.
+    r"""Formats a text as one printable line; shortens long words first, then cuts the middle.
+
+    Args:
+        text: Any text.
+        limit: Maximum number of characters. Default: 500.
+
+    Returns:
+        One line without control characters.
 
     >>> one_line("a\nb\x1b[31m")
     'a b\\x1b[31m'

@@ -1,4 +1,4 @@
-"""Point-cloud settings of a TI out-of-box demo's .cfg: CFAR, peak grouping, clutter removal, beamforming."""
+"""Point-cloud settings from the .cfg of TI's out-of-box demo: CFAR, peak grouping, clutter removal, beamforming."""
 
 from dataclasses import dataclass, replace
 
@@ -6,15 +6,24 @@ from mmweaver.core.errors import InputError
 
 AVERAGE_MODES = ("ca", "cago", "caso")  # 0, 1, 2 of cfarCfg
 DEVICES = ("xwr14xx", "xwr16xx")
-MAX_OBJECTS, MAX_OBJECTS_3D = 100, 64  # the demo's lists; an elevated row leaves memory for fewer
-SDK3_MAX_OBJECTS = 500  # of both of its detection chains, with the hardware accelerator and on the DSP
+MAX_OBJECTS, MAX_OBJECTS_3D = 100, 64  # list sizes of the demo; elevation antennas leave memory for fewer objects
+SDK3_MAX_OBJECTS = 500  # in both detection chains of SDK 3, hardware accelerator and DSP
 
 
 @dataclass(frozen=True, kw_only=True)
 class FirmwareCfar:
-    """One `cfarCfg` line. Lengths in bins; the threshold in the counts of the device (see FirmwareSettings).
+    """One `cfarCfg` line of TI's demo.
 
-    Raises InputError for settings that the demo would reject.
+    Attributes:
+        average: Averaging mode: "ca", "cago" or "caso".
+        window: Averaging window in bins.
+        guard: Guard cells in bins.
+        noise_shift: The noise sum is divided by 2 ** noise_shift.
+        cyclic: Whether the window wraps around at the ends.
+        threshold: Threshold in the device's counts, see `FirmwareSettings`.
+
+    Raises:
+        InputError: If the demo would reject the settings.
     """
 
     average: str = "ca"
@@ -36,14 +45,25 @@ class FirmwareCfar:
 
 @dataclass(frozen=True, kw_only=True)
 class FirmwareSettings:
-    """The point cloud of a TI out-of-box demo.
+    """Detection settings of TI's out-of-box demo.
 
-    `device` decides how antennas are summed: "xwr14xx" (IWR1443) has the sum of log2 magnitudes in Q9 divided by the
-    next power of two of their number, and a CFAR window that counts both sides; "xwr16xx" (and 18xx, 68xx of SDK 2)
-    the whole sum in Q8 and a window on either side. So 15 dB are 1280 or, with eight antennas, 5120. A direction
-    without a CFAR is not tested. Range bins are those of the device's FFT (the next power of two of the samples).
-    `second_peak` is the share of the highest azimuth peak above which a second one is an object too, None = off.
-    Raises InputError for an impossible setting.
+    Attributes:
+        device: Arithmetic of the detection matrix. "xwr14xx" (IWR1443): sum of log2 magnitudes in Q9 divided by the
+            next power of two of the number of antennas; the CFAR window counts both sides. "xwr16xx" (also 18xx and
+            68xx of SDK 2): undivided sum in Q8; the window counts one side. 15 dB are 1280 or, with eight antennas,
+            5120.
+        range_cfar: CFAR in range; None skips the test.
+        doppler_cfar: CFAR in Doppler; None skips the test.
+        group_range: Whether neighbouring detections in range are grouped into peaks.
+        group_doppler: The same in Doppler.
+        first_range_bin: First bin of the device's range FFT (next power of two of the samples) that is searched.
+        last_range_bin: Last bin that is searched.
+        static_removal: Whether static clutter is removed.
+        second_peak: Share of the highest azimuth peak above which a second peak is reported as well; None disables it.
+        most_objects: Maximum number of objects per frame; None keeps the limit of SDK 1 and 2.
+
+    Raises:
+        InputError: If a setting is impossible.
     """
 
     device: str = "xwr14xx"
@@ -55,7 +75,7 @@ class FirmwareSettings:
     last_range_bin: int = 229
     static_removal: bool = False
     second_peak: float | None = 0.5
-    most_objects: int | None = None  # None = the limit of the demo of SDK 1 and 2
+    most_objects: int | None = None
 
     def __post_init__(self) -> None:
         if self.device not in DEVICES:
@@ -70,14 +90,21 @@ class FirmwareSettings:
             raise InputError(f"the most objects per frame must be at least 1, not {self.most_objects}")
 
     def with_threshold(self, threshold: int | float | None) -> "FirmwareSettings":
-        """The same with this threshold of the CFAR in range, in counts; None, or no such CFAR, leaves it."""
+        """Replaces the threshold of the range CFAR.
+
+        Args:
+            threshold: Threshold in counts; None keeps the present one.
+
+        Returns:
+            The new settings; unchanged without a range CFAR.
+        """
         if threshold is None or self.range_cfar is None:
             return self
         return replace(self, range_cfar=replace(self.range_cfar, threshold=round(threshold)))
 
 
-# The out-of-box demo of SDK 3 for boards with three transmitters: 15 dB in range and in Doppler, one object a peak.
-SDK3_COUNTS = 7654  # 15 dB of twelve antennas in Q8
+# SDK 3 out-of-box demo for boards with three transmitters: 15 dB in range and in Doppler, one object per peak.
+SDK3_COUNTS = 7654  # 15 dB for twelve antennas in Q8
 SDK3 = FirmwareSettings(
     device="xwr16xx",
     range_cfar=FirmwareCfar(average="caso", window=8, guard=4, noise_shift=4, threshold=SDK3_COUNTS),
@@ -85,9 +112,9 @@ SDK3 = FirmwareSettings(
     most_objects=SDK3_MAX_OBJECTS,
 )
 
-# By radar preset. RadHAR: grouped in Doppler and not in range, as the recordings show; threshold and clutter removal
-# are the 3D profile's. MARS: what stands still is missing from the recordings, so clutter removal was on; neighbours in
-# range and in Doppler are both there, so grouping was off; the rest is the 3D profile's.
+# By radar preset. RadHAR: its recordings are grouped in Doppler but not in range; threshold and clutter removal follow
+# the 3D profile. MARS: its recordings lack static points, so clutter removal was on, and contain neighbouring bins in
+# range and Doppler, so grouping was off; the rest follows the 3D profile.
 FIRMWARE = {
     "iwr1443_radhar": FirmwareSettings(group_range=False),
     "iwr6843isk": SDK3,

@@ -1,4 +1,4 @@
-"""Silences logs while the Hub's client reports every retry; the user gets one error line instead."""
+"""Silences logging while the Hub client reports every retry; the user gets one error line instead."""
 
 import logging
 from collections.abc import Iterator
@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def hub_log_off() -> Iterator[None]:
-    """Suppresses all logs inside."""
+    """Context in which all logging is suppressed."""
     before = logging.root.manager.disable
     logging.disable(logging.CRITICAL)
     try:

@@ -1,10 +1,10 @@
-"""Packages that single features need, by the extra that installs them."""
+"""Optional packages, by the extra that installs them."""
 
 from importlib.util import find_spec
 
 from mmweaver.core.errors import InputError
 
-# module -> its package, of each extra that a message names; a test holds this to pyproject.toml and to all imports.
+# module -> package for each extra named in error messages; a test compares this with pyproject.toml and all imports
 EXTRAS: dict[str, dict[str, str]] = {
     "capture": {"av": "av", "rosbags": "rosbags", "zstandard": "zstandard"},
     "codecs": {"blosc2": "blosc2", "imagecodecs": "imagecodecs", "pywt": "pywavelets", "tensorly": "tensorly"},
@@ -31,15 +31,15 @@ EXTRAS: dict[str, dict[str, str]] = {
 
 
 def need(extra: str, what: str, *modules: str) -> None:
-    """Checks that packages of an extra are installed.
+    """Checks that the packages of an extra are installed.
 
     Args:
         extra: Name of the extra.
-        what: What needs them, the subject of the error.
+        what: Feature that needs them, the subject of the error message.
         *modules: Modules that are needed. Default: all of the extra.
 
     Raises:
-        InputError: with the package that is missing and how to install it.
+        InputError: If one is missing, with the command that installs it.
     """
     for module in modules or EXTRAS[extra]:
         if not is_installed(module):
@@ -49,8 +49,8 @@ def need(extra: str, what: str, *modules: str) -> None:
 
 
 def is_installed(module: str) -> bool:
-    """Whether a module can be found; it is not imported."""
+    """Whether a module can be found, without importing it."""
     try:
         return find_spec(module) is not None
-    except ValueError:  # it was put in place by hand
+    except ValueError:  # in sys.modules without a spec
         return True

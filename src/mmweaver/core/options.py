@@ -1,4 +1,4 @@
-"""Options as typed fields: one dataclass is the source of command line, TOML file and Python keywords alike."""
+"""Options as typed fields: one dataclass defines command line, TOML file and Python keywords."""
 
 import dataclasses
 import inspect
@@ -20,27 +20,37 @@ _WHAT = {int: "whole number", float: "number"}
 
 @dataclass_transform(kw_only_default=True, frozen_default=True)
 def options(own: ClassT) -> ClassT:
-    """Makes a class of typed fields a frozen dataclass whose fields are given by name."""
+    """Class decorator: a frozen, keyword-only dataclass of typed option fields."""
     return dataclasses.dataclass(frozen=True, kw_only=True)(own)
 
 
 def option(text: str, metavar: str | None = None, *, default: Any = None, **more: Any) -> Any:
-    """A field that is an option.
+    """Declares a dataclass field that is an option.
 
     Args:
-        text: what it is, in one line, with its unit.
-        metavar: how a value is written, such as X,Y.
-        default: the value where it is not given; MISSING if it must be given.
-        more: `name` on the command line (default: that of the field); `short`, such as "-o"; `kind`, the type of one
-            value, or what makes it of a word, where the annotation does not say it; `many`, several values; `group`,
-            the title of the group of options that begins here; `rare`, shown by --help-all alone; `positional`;
-            `is_setting`, False for what concerns how or where a run writes rather than what it makes.
+        text: Help text in one line, with the unit.
+        metavar: Format of a value, such as X,Y.
+        default: Default value; MISSING if the option is required.
+        more: `name` on the command line (default: the field's); `short`, such as "-o"; `kind`, type of one value or
+            parser of one word if the annotation does not state it; `many`, several values; `group`, title of the group
+            of options that starts here; `rare`, listed by --help-all only; `positional`; `is_setting`, False for
+            options that affect how or where a run writes rather than its content.
+
+    Returns:
+        A dataclass field.
     """
     return dataclasses.field(default=default, metadata={"help": text, "metavar": metavar, **more})
 
 
 def options_of(asked: Any) -> list["dataclasses.Field[Any]"]:
-    """The options of a dataclass or of its instance: its own first, then those of its bases from left to right."""
+    """Lists the option fields of a dataclass.
+
+    Args:
+        asked: The dataclass or an instance of it.
+
+    Returns:
+        Its own options first, then those of its bases from left to right.
+    """
     own = asked if isinstance(asked, type) else type(asked)
     fields = {one.name: one for one in dataclasses.fields(own) if "help" in one.metadata}
     names = dict.fromkeys(name for base in own.__mro__ for name in vars(base).get("__annotations__", ()))
@@ -48,12 +58,19 @@ def options_of(asked: Any) -> list["dataclasses.Field[Any]"]:
 
 
 def option_name(one: "dataclasses.Field[Any]") -> str:
-    """The name on the command line, without dashes in front."""
+    """Name of an option on the command line, without leading dashes."""
     return one.metadata.get("name") or one.name.replace("_", "-")
 
 
 def option_kind(one: "dataclasses.Field[Any]") -> tuple[Any, bool]:
-    """The type of one value, and whether there may be several."""
+    """Determines the type of an option.
+
+    Args:
+        one: The option.
+
+    Returns:
+        Type of one value, and whether the option takes several values.
+    """
     kind = one.metadata.get("kind") or one.type
     if get_origin(kind) in (Union, UnionType):
         kind = next(member for member in get_args(kind) if member is not NoneType)
@@ -62,7 +79,18 @@ def option_kind(one: "dataclasses.Field[Any]") -> tuple[Any, bool]:
 
 
 def read_word(one: "dataclasses.Field[Any]", word: str) -> Any:
-    """One value of an option. Raises InputError for a word that is none."""
+    """Parses one value of an option from the command line.
+
+    Args:
+        one: The option.
+        word: Word of the command line.
+
+    Returns:
+        The value in the type of the option.
+
+    Raises:
+        InputError: If the word does not parse.
+    """
     kind = option_kind(one)[0]
     try:
         return _read(kind, word)
@@ -87,7 +115,18 @@ def _read(kind: Any, word: str) -> Any:
 
 
 def read_value(one: "dataclasses.Field[Any]", value: Any) -> Any:
-    """The value of an option in JSON or TOML: numbers, texts, lists of them. Raises InputError for another."""
+    """Converts the value of an option from JSON or TOML.
+
+    Args:
+        one: The option.
+        value: Number, text, boolean, or a list of them.
+
+    Returns:
+        The value in the type of the option, or a list for options with several values.
+
+    Raises:
+        InputError: If the value has another type or is not among the choices.
+    """
     kind, is_many = option_kind(one)
     if kind is bool:
         if not isinstance(value, bool):
@@ -107,7 +146,19 @@ def read_value(one: "dataclasses.Field[Any]", value: Any) -> Any:
 
 
 def read_settings(given: list[Setting] | None, kinds: dict[str, Any], name: str) -> dict[str, Any]:
-    """The values of an option KEY=VALUE. Raises InputError for a key that is not among `kinds`, or a bad value."""
+    """Parses the values of a KEY=VALUE option.
+
+    Args:
+        given: Words KEY=VALUE, or None.
+        kinds: Type of the value by key.
+        name: Name of the option for error messages.
+
+    Returns:
+        Values by key.
+
+    Raises:
+        InputError: If a key is unknown or a value does not parse.
+    """
     values = {}
     for setting in given or ():
         key, equals, word = setting.partition("=")
@@ -121,7 +172,14 @@ def read_settings(given: list[Setting] | None, kinds: dict[str, Any], name: str)
 
 
 def write_word(value: Any) -> str:
-    """A value as `read_word` reads it."""
+    """Formats a value such that `read_word` parses it.
+
+    Args:
+        value: Number, text, or (nested) tuple of these.
+
+    Returns:
+        Word of the command line.
+    """
     if not isinstance(value, tuple | list):
         return str(getattr(value, "words", value))
     if len(value) > 1 and isinstance(value[0], str) and isinstance(value[1], tuple):
@@ -131,7 +189,14 @@ def write_word(value: Any) -> str:
 
 
 def given_values(asked: Any) -> "dict[str, tuple[dataclasses.Field[Any], list[Any]]]":
-    """The values of all options that differ from their default, by name on the command line."""
+    """Lists the options that differ from their default.
+
+    Args:
+        asked: Instance of an options dataclass.
+
+    Returns:
+        Field and list of values, by name on the command line.
+    """
     found = {}
     for one in options_of(asked):
         value = getattr(asked, one.name)
@@ -143,12 +208,19 @@ def given_values(asked: Any) -> "dict[str, tuple[dataclasses.Field[Any], list[An
 
 
 def _is_single(one: "dataclasses.Field[Any]", value: Any) -> bool:
-    """Whether the value of an option with several values is one of them, such as a place of a single person."""
+    """Whether the value of a multi-value option is a single tuple value, such as the position of one person."""
     return get_origin(option_kind(one)[0]) is tuple and not any(isinstance(part, list | tuple) for part in value)
 
 
 def command_words(asked: Any) -> list[str]:
-    """The options as words of a command line."""
+    """Formats the options as words of a command line; inverse of parsing.
+
+    Args:
+        asked: Instance of an options dataclass.
+
+    Returns:
+        Words such as "--radar", "awr1843"; options at their default are omitted.
+    """
     words = []
     for name, (one, values) in given_values(asked).items():
         for word in [write_word(value) for value in values if value is not None]:
@@ -160,7 +232,15 @@ def command_words(asked: Any) -> list[str]:
 
 
 def keywords_of(asked: Any, *without: str) -> Callable[[FunctionT], FunctionT]:
-    """Gives a function's last parameter, `**asked`, the signature of a dataclass's fields."""
+    """Decorator that gives a function's last parameter, `**asked`, the signature of a dataclass's fields.
+
+    Args:
+        asked: The dataclass.
+        *without: Names of fields that are excluded.
+
+    Returns:
+        The decorator.
+    """
 
     def signed(function: FunctionT) -> FunctionT:
         signature = inspect.signature(function)

@@ -1,4 +1,4 @@
-"""What can be refused before long work begins: where nothing can be written, or where an input would be replaced."""
+"""Checks before long work begins: output that cannot be written, or that would replace an input."""
 
 import errno
 import os
@@ -9,7 +9,7 @@ from pathlib import Path
 from mmweaver.core.errors import InputError
 from mmweaver.core.staging import finish_moving, is_staged, remove, staging_path, sweep
 
-MAX_NAME_BYTES = 255  # bytes, where the file system does not say
+MAX_NAME_BYTES = 255  # if the file system does not report a limit
 ADVICE = {
     errno.ENOSPC: "free some space or choose another --out",
     errno.EDQUOT: "free some space or choose another --out",
@@ -22,18 +22,26 @@ ADVICE = {
 
 
 def cannot_write(path: Path, error: OSError) -> InputError:
-    """The one line for a failed write, with what helps against its cause."""
+    """Error for a failed write, with advice that depends on its cause.
+
+    Args:
+        path: What was to be written.
+        error: Error of the operating system.
+
+    Returns:
+        The error to raise.
+    """
     advice = ADVICE.get(error.errno or 0, "choose another --out")
     return InputError(f"cannot write {_short(path)}: {error.strerror or error}; {advice}")
 
 
 def resolved(path: Path | str) -> Path:
-    """The absolute path behind all links: what is written is the target of a link, not the link."""
+    """Absolute path with all links resolved: output goes to the target of a link and does not replace the link."""
     return Path(os.path.realpath(path))
 
 
 def _mode(target: Path, out: Path) -> int | None:
-    """Type and permissions of what is there, None for nothing. Raises InputError where that is unknown."""
+    """File type and permissions, or None if nothing exists. Raises InputError if they cannot be read."""
     try:
         return target.lstat().st_mode
     except (FileNotFoundError, NotADirectoryError):
@@ -43,7 +51,7 @@ def _mode(target: Path, out: Path) -> int | None:
 
 
 def check_output_file(out: Path, *, overwrite: bool, inputs: Iterable[Path | None] = ()) -> None:
-    """Refuses an output file before any work.
+    """Checks an output file before any work.
 
     Args:
         out: The file.
@@ -51,7 +59,7 @@ def check_output_file(out: Path, *, overwrite: bool, inputs: Iterable[Path | Non
         inputs: Files, or folders with recordings, that it must not replace; None is skipped.
 
     Raises:
-        InputError: where it cannot be written, exists, or belongs to an input.
+        InputError: If it cannot be written, exists, or belongs to an input.
     """
     target = resolved(out)
     mode = _mode(target, out)
@@ -71,16 +79,16 @@ def check_output_file(out: Path, *, overwrite: bool, inputs: Iterable[Path | Non
 def check_output_folder(
     out: Path, *, overwrite: bool, files: Iterable[str] = (), inputs: Iterable[Path | None] = ()
 ) -> None:
-    """Refuses an output folder before any work.
+    """Checks an output folder before any work.
 
     Args:
         out: The folder.
-        overwrite: Whether it may hold files.
-        files: Names that will be written into it; none of them may be a folder, or one of `inputs`.
+        overwrite: Whether it may contain files.
+        files: Names that will be written into it; none of them may be a folder or one of `inputs`.
         inputs: Files that must not be replaced; None is skipped.
 
     Raises:
-        InputError: where it cannot be written, or is not empty and `overwrite` is not set.
+        InputError: If it cannot be written, is not empty without `overwrite`, or would replace an input.
     """
     target = resolved(out)
     mode = _mode(target, out)
@@ -103,7 +111,14 @@ def check_output_folder(
 
 
 def is_empty(folder: Path) -> bool:
-    """Whether a folder holds nothing but what unfinished writing left."""
+    """Whether a folder contains nothing but leftovers of unfinished writes.
+
+    Args:
+        folder: The folder.
+
+    Raises:
+        InputError: If it cannot be read.
+    """
     try:
         with os.scandir(folder) as entries:
             return all(is_staged(entry.name) for entry in entries)
@@ -118,7 +133,7 @@ def _is_input(target: Path, given: Path) -> bool:
 
 
 def _check_place(folder: Path, out: Path) -> None:
-    """Raises InputError where no entry can be made in `folder`, or in the nearest one above that exists."""
+    """Raises InputError if no entry can be created in `folder` or its nearest existing parent."""
     try:
         nearest = next(place for place in (folder, *folder.parents) if os.path.lexists(place))
     except OSError as error:
@@ -139,6 +154,6 @@ def _check_place(folder: Path, out: Path) -> None:
 
 
 def _short(path: Path) -> str:
-    """A path of any length, for one line."""
+    """Abbreviates a long path for a one-line message."""
     text = str(path)
     return text if len(text) <= 200 else f"{text[:90]} ... {text[-90:]}"

@@ -1,4 +1,4 @@
-"""The pinhole camera. Camera frame: x right, y down, z forward (the optical axis); pixel centres at whole numbers."""
+"""The pinhole camera. Camera frame: x right, y down, z forward (the optical axis); pixel centres at integers."""
 
 from typing import Any
 
@@ -10,9 +10,21 @@ from mmweaver.core.shapes import Array, DepthPixels
 
 
 def pixel_coordinates(x_m: Any, y_m: Any, depth_m: Any, fx: Any, fy: Any, cx: Any, cy: Any) -> tuple[Any, Any]:
-    """Perspective projection of points in the camera frame: their columns and rows, in pixels.
+    """Perspective projection of points in the camera frame.
 
-    Plain arithmetic, for numpy arrays and torch tensors alike; shapes broadcast. The caller keeps `depth_m` positive.
+    Plain arithmetic on numpy arrays or torch tensors; shapes broadcast. The caller ensures positive depth.
+
+    Args:
+        x_m: Coordinate to the right in metres.
+        y_m: Coordinate downwards in metres.
+        depth_m: Depth along the optical axis in metres.
+        fx: Horizontal focal length in pixels.
+        fy: Vertical focal length in pixels.
+        cx: Column of the principal point.
+        cy: Row of the principal point.
+
+    Returns:
+        Columns and rows in pixels.
     """
     return fx * x_m / depth_m + cx, fy * y_m / depth_m + cy
 
@@ -20,9 +32,14 @@ def pixel_coordinates(x_m: Any, y_m: Any, depth_m: Any, fx: Any, fy: Any, cx: An
 def project(
     points_camera: Float[Array, "*points 3"], intrinsics: CameraIntrinsics
 ) -> tuple[Float[Array, "*points 2"], Float[Array, "*points"]]:
-    """Projects points of the camera frame, in metres: their pixels (column, row) and their depth in metres.
+    """Projects points of the camera frame into the picture.
 
-    The pixel is nan where the depth is not positive.
+    Args:
+        points_camera: Points in metres, (..., 3).
+        intrinsics: The camera.
+
+    Returns:
+        Pixels (column, row), (..., 2), nan where the depth is not positive; and depth in metres, (...,).
 
     >>> camera = CameraIntrinsics(fx=500.0, fy=500.0, cx=320.0, cy=240.0, width=640, height=480)
     >>> pixels, depth = project(np.array([[0.2, -0.1, 2.0]]), camera)
@@ -44,25 +61,48 @@ def project(
 
 
 def normalized_coordinates(intrinsics: CameraIntrinsics) -> tuple[Float[Array, " width"], Float[Array, "height 1"]]:
-    """x / z of every column, (width,), and y / z of every row, (height, 1)."""
+    """Normalised image coordinates of a pinhole camera.
+
+    Args:
+        intrinsics: The camera.
+
+    Returns:
+        x / z of each column, (width,), and y / z of each row, (height, 1).
+    """
     x = (np.arange(intrinsics.width) - intrinsics.cx) / intrinsics.fx
     y = (np.arange(intrinsics.height) - intrinsics.cy) / intrinsics.fy
     return x, y[:, None]
 
 
 def unproject(depth: DepthPixels, intrinsics: CameraIntrinsics) -> Float[Array, "height width 3"]:
-    """The point of every pixel in the camera frame, metres, from its depth along the optical axis; nan stays nan."""
+    """Back-projects a depth image.
+
+    Args:
+        depth: Depth along the optical axis in metres, (height, width); nan stays nan.
+        intrinsics: The camera.
+
+    Returns:
+        Points in the camera frame in metres, (height, width, 3).
+    """
     x, y = normalized_coordinates(intrinsics)
     return np.stack([depth * x, depth * y, depth], axis=-1)
 
 
 def viewing_rays(intrinsics: CameraIntrinsics) -> Float[Array, "height width 3"]:
-    """The direction of every pixel in the camera frame, scaled to a depth of 1: depth times ray is the point."""
+    """Viewing direction of each pixel in the camera frame, scaled so that depth times ray is the point."""
     return unproject(np.ones((intrinsics.height, intrinsics.width)), intrinsics)
 
 
 def subsampled(intrinsics: CameraIntrinsics, step: int) -> CameraIntrinsics:
-    """The intrinsics of the picture `[::step, ::step]`, whose pixel (0, 0) is that of the whole picture."""
+    """Intrinsics of the picture `[::step, ::step]`.
+
+    Args:
+        intrinsics: Camera of the full picture.
+        step: Subsampling factor; pixel (0, 0) is kept.
+
+    Returns:
+        Camera of the subsampled picture.
+    """
     return CameraIntrinsics(
         fx=intrinsics.fx / step,
         fy=intrinsics.fy / step,
@@ -74,9 +114,16 @@ def subsampled(intrinsics: CameraIntrinsics, step: int) -> CameraIntrinsics:
 
 
 def binned(intrinsics: CameraIntrinsics, size: int) -> CameraIntrinsics:
-    """The intrinsics of a picture whose pixels are blocks of size x size pixels; incomplete blocks are left out.
+    """Intrinsics of a picture whose pixels are blocks of size x size pixels.
 
-    Pixel centres lie at whole numbers, so the picture's edge, at -0.5, stays in place.
+    The picture edge stays at -0.5, since pixel centres lie at integers.
+
+    Args:
+        intrinsics: Camera of the full picture.
+        size: Block size in pixels; incomplete blocks are dropped.
+
+    Returns:
+        Camera of the binned picture.
     """
     return CameraIntrinsics(
         fx=intrinsics.fx / size,
@@ -89,7 +136,16 @@ def binned(intrinsics: CameraIntrinsics, size: int) -> CameraIntrinsics:
 
 
 def resized(intrinsics: CameraIntrinsics, width: int, height: int) -> CameraIntrinsics:
-    """The intrinsics of the same view resampled to width x height pixels; the picture's edge, at -0.5, stays."""
+    """Intrinsics of the same view resampled to another size; the picture edge stays at -0.5.
+
+    Args:
+        intrinsics: Camera of the original picture.
+        width: New width in pixels.
+        height: New height in pixels.
+
+    Returns:
+        Camera of the resampled picture.
+    """
     scale_x, scale_y = width / intrinsics.width, height / intrinsics.height
     return CameraIntrinsics(
         fx=intrinsics.fx * scale_x,
@@ -102,7 +158,7 @@ def resized(intrinsics: CameraIntrinsics, width: int, height: int) -> CameraIntr
 
 
 def rotated_clockwise(intrinsics: CameraIntrinsics) -> CameraIntrinsics:
-    """The intrinsics of a picture rotated by 90 degrees clockwise."""
+    """Intrinsics of a picture rotated clockwise by 90 degrees."""
     return CameraIntrinsics(
         fx=intrinsics.fy,
         fy=intrinsics.fx,

@@ -1,4 +1,4 @@
-"""Radar presets and the antennas of boards, from radars.toml; a preset or a board is a section there."""
+"""Radar presets and antenna tables from radars.toml, one section per preset or board."""
 
 from pathlib import Path
 from typing import Any
@@ -19,22 +19,33 @@ ANTENNAS: Registry[AntennaTable] = Registry("antenna table", [(name, _ARRAYS[nam
 
 
 def halfwave_positions(places: Places, centre_frequency_hz: float) -> tuple[Position, ...]:
-    """(x, z) in half wavelengths at a frequency -> (x, y, z) in metres, y = 0."""
+    """Converts antenna positions from half wavelengths to metres.
+
+    Args:
+        places: (x, z) in half wavelengths.
+        centre_frequency_hz: Frequency of that wavelength.
+
+    Returns:
+        (x, y, z) in metres, with y = 0.
+    """
     half_m = SPEED_OF_LIGHT_MPS / centre_frequency_hz / 2
     return tuple((x * half_m, 0.0, z * half_m) for x, z in places)
 
 
 def ti_board(name: str, board: AntennaTable, *, spaced_at_hz: float | None = None, **chirp: Any) -> RadarConfig:
-    """A board with this array.
+    """Builds the radar configuration of a TI board.
 
     Args:
         name: Name of the radar.
-        board: Its antennas.
-        spaced_at_hz: Frequency at which they are half a wavelength apart. Default: the middle of the sampled sweep.
-        **chirp: Fields of RadarConfig.
+        board: Antenna positions.
+        spaced_at_hz: Frequency at which the spacing is half a wavelength. Default: centre of the sampled sweep.
+        **chirp: Fields of RadarConfig. Defaults: start at 77 GHz, a frame every 0.1 s, transmitters in numerical order.
 
     Returns:
-        The radar, at 77 GHz with a frame every 0.1 s and transmitters in their order where `chirp` has no other.
+        The radar.
+
+    Raises:
+        InputError: If the radar is impossible.
     """
     values: dict[str, Any] = {
         "start_frequency_hz": 77.0e9,

@@ -1,4 +1,4 @@
-"""What a radar's parameters may be, alone and together, so that each signal is finite and not zero."""
+"""Limits on radar parameters, alone and in combination, that keep every signal finite and nonzero."""
 
 import math
 from collections.abc import Iterator
@@ -31,12 +31,22 @@ MAX_POSITION_M = 10.0
 MAX_ANTENNAS = 1024
 MAX_FRAME_NUMBERS = 2**25  # complex numbers of one frame: 256 MB
 MAX_NAME = 100
-RAMP_BEYOND_BAND_HZ = 100e6  # that boards accept past the end of their band: the ADC has stopped by then
-MAX_COUNT_TO_NOISE = 4.0  # power of one count of the converter over that of the noise: more, and the noise rounds to 0
+RAMP_BEYOND_BAND_HZ = 100e6  # overrun of the band that boards accept, since the ADC has stopped by then
+MAX_COUNT_TO_NOISE = 4.0  # power of one ADC count / noise power; above this the noise rounds to 0
 
 
 def problems(config: "RadarConfig") -> Iterator[str]:
-    """What is wrong with a radar, the first that makes the others meaningless first; nothing where it could exist."""
+    """Lists what makes a radar impossible.
+
+    Args:
+        config: The radar.
+
+    Yields:
+        One sentence per problem, starting with those that make the following ones meaningless; none for a valid radar.
+
+    Raises:
+        InputError: If the transmit code cannot be decoded.
+    """
     yield from _value_problems(config)
     if any(len(row) != config.num_tx or not any(map(any, row)) for row in config.tx_code):
         yield f"each row of tx_code needs a weight of each of its {config.num_tx} transmitters, not all 0"
@@ -71,7 +81,7 @@ def problems(config: "RadarConfig") -> Iterator[str]:
 
 
 def _array_problems(config: "RadarConfig") -> Iterator[str]:
-    """Of antennas and of their order in recordings."""
+    """Problems of the antenna array and the channel order of recordings."""
     if sorted(config.tx_order) != list(range(config.num_tx)):
         yield f"tx_order {config.tx_order} must name each of its {config.num_tx} transmitters once"
     if config.loop_gap_s < 0:
@@ -89,12 +99,12 @@ def _array_problems(config: "RadarConfig") -> Iterator[str]:
 
 
 def _value_problems(config: "RadarConfig") -> Iterator[str]:
-    """Of values one by one."""
+    """Problems of single values."""
     if not config.name or len(config.name) > MAX_NAME or not config.name.isprintable():
         yield f"its name must have 1 to {MAX_NAME} printable characters"
     for name, (low, high) in LIMITS.items():
         value: Any = getattr(config, name)
-        if not low <= value <= high:  # not so of NaN
+        if not low <= value <= high:  # also true for nan
             yield f"{name} must be {low:g} to {high:g}, not {value}"
     if not all(math.isfinite(limit) for limit in config.frequency_limits_hz):
         yield f"frequency_limits_hz is {config.frequency_limits_hz}"
@@ -109,7 +119,7 @@ def _value_problems(config: "RadarConfig") -> Iterator[str]:
 
 
 def _signal_problems(config: "RadarConfig") -> Iterator[str]:
-    """Of values in combination, each possible."""
+    """Problems of combinations of individually valid values."""
     numbers = config.num_samples * config.num_loops * config.num_antennas
     if numbers > MAX_FRAME_NUMBERS:
         yield f"one frame has {numbers} samples, more than {MAX_FRAME_NUMBERS}; take fewer samples, loops or antennas"

@@ -1,4 +1,4 @@
-"""Where a radar stands in a room and how it is turned: a rigid motion from the camera's level frame to its own."""
+"""Position and orientation of a radar in a room: a rigid motion from the camera's level frame to the radar's."""
 
 import math
 from dataclasses import dataclass
@@ -16,11 +16,13 @@ MAX_RADARS = 8
 
 @dataclass(frozen=True, kw_only=True)
 class RadarPose:
-    """A radar in the camera's level frame: x right, y away from the camera, z up, origin at the camera.
+    """Pose of a radar in the camera's level frame: x right, y away from the camera, z up, origin at the camera.
 
-    `yaw_deg` turns the boresight to the right and `pitch_deg` lifts it; `roll_deg` then leans the radar to its right,
-    about the boresight (90: HuPR's vertical radar). The default stands at the camera, level. Raises InputError for
-    numbers that are not finite or outside their limits.
+    `yaw_deg` turns the boresight to the right, `pitch_deg` raises it, and `roll_deg` then tilts the radar to its right
+    about the boresight (90: vertical radar of HuPR). The default pose is level, at the camera.
+
+    Raises:
+        InputError: If a number is not finite or outside its limits.
     """
 
     x_m: float = 0.0
@@ -44,7 +46,17 @@ class RadarPose:
 
     @classmethod
     def of_words(cls, words: str) -> "RadarPose":
-        """'x,y,z,yaw,pitch' or 'x,y,z,yaw,pitch,roll' in metres and degrees. Raises InputError."""
+        """Parses a pose.
+
+        Args:
+            words: "x,y,z,yaw,pitch" or "x,y,z,yaw,pitch,roll" in metres and degrees.
+
+        Returns:
+            The pose.
+
+        Raises:
+            InputError: If the text does not parse or is outside the limits.
+        """
         try:
             values = [float(word) for word in words.split(",")]
         except ValueError:
@@ -59,7 +71,7 @@ class RadarPose:
 
     @property
     def words(self) -> str:
-        """As `of_words` reads it.
+        """The pose in the format of `of_words`.
 
         >>> RadarPose(x_m=0.5, yaw_deg=-30.0).words
         '0.5,0,0,-30,0,0'
@@ -69,17 +81,17 @@ class RadarPose:
 
     @property
     def is_at_camera(self) -> bool:
-        """Whether it stands at the camera, level, as a radar does by default."""
+        """Whether this is the default pose, level at the camera."""
         return self == RadarPose()
 
     @property
     def position_m(self) -> np.ndarray:
-        """(3,) in the camera's level frame."""
+        """Position in the camera's level frame in metres, (3,)."""
         return np.array([self.x_m, self.y_m, self.z_m], float)
 
     @property
     def from_level(self) -> Rotation:
-        """The rotation from the camera's level frame into the radar's: rows are its right, boresight and up."""
+        """Rotation from the camera's level frame to the radar's, (3, 3); rows are right, boresight and up."""
         yaw, pitch, roll = np.radians([self.yaw_deg, self.pitch_deg, self.roll_deg])
         boresight = np.array([np.sin(yaw) * np.cos(pitch), np.cos(yaw) * np.cos(pitch), np.sin(pitch)])
         level_right = np.array([np.cos(yaw), -np.sin(yaw), 0.0])
@@ -88,23 +100,51 @@ class RadarPose:
         return np.stack([right, boresight, np.cross(right, boresight)])
 
     def seen(self, points_m: Any) -> np.ndarray:
-        """Points (..., 3) of the camera's level frame in the radar's frame, metres."""
+        """Transforms points to the radar's frame.
+
+        Args:
+            points_m: Points in the camera's level frame, metres, (..., 3).
+
+        Returns:
+            Points in the radar's frame, metres, (..., 3).
+        """
         if self.is_at_camera:
             return np.asarray(points_m)
         return (np.asarray(points_m) - self.position_m) @ self.from_level.T
 
     def seen_directions(self, vectors: Any) -> np.ndarray:
-        """Directions (..., 3) of the camera's level frame in the radar's frame."""
+        """Rotates directions to the radar's frame.
+
+        Args:
+            vectors: Directions in the camera's level frame, (..., 3).
+
+        Returns:
+            Directions in the radar's frame, (..., 3).
+        """
         return np.asarray(vectors) @ self.from_level.T
 
     def in_level_frame(self, points_m: Any) -> np.ndarray:
-        """Points (..., 3) of the radar's frame in the camera's level frame, metres."""
+        """Transforms points to the camera's level frame; inverse of `seen`.
+
+        Args:
+            points_m: Points in the radar's frame, metres, (..., 3).
+
+        Returns:
+            Points in the camera's level frame, metres, (..., 3).
+        """
         if self.is_at_camera:
             return np.asarray(points_m)
         return np.asarray(points_m) @ self.from_level + self.position_m
 
     def noise_seed(self, seed: int) -> int:
-        """The seed of this radar's noise: radars of one scene share people and room, but no noise."""
+        """Seed of this radar's noise, which is independent between the radars of one scene.
+
+        Args:
+            seed: Seed of the run.
+
+        Returns:
+            `seed` itself for the default pose, otherwise derived from seed and pose.
+        """
         return seed if self.is_at_camera else int(stream(seed, "radar", self.words).integers(2**62))
 
 
@@ -112,7 +152,14 @@ AT_CAMERA = RadarPose()
 
 
 def check_poses(poses: tuple[RadarPose, ...]) -> None:
-    """Raises InputError for too many radars, or two at the same place that look the same way."""
+    """Checks the poses of all radars of a scene.
+
+    Args:
+        poses: One pose per radar.
+
+    Raises:
+        InputError: If there are too many, or two are equal.
+    """
     if len(poses) > MAX_RADARS:
         raise InputError(f"give at most {MAX_RADARS} radars, not {len(poses)}")
     if len(set(poses)) < len(poses):

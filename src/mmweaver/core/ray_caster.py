@@ -1,4 +1,4 @@
-"""Ray casting with Embree on a triangle mesh, called directly: wrapper libraries take 2 to 8 times as long."""
+"""Ray casting on a triangle mesh by direct calls to Embree; wrapper libraries are 2 to 8 times slower."""
 
 import os
 from functools import lru_cache
@@ -15,10 +15,10 @@ _FLOAT32_ERROR_M = 1e-2
 
 
 class RayCaster:
-    """Finds the first face that a ray hits, from either side.
+    """Finds the first face hit by each ray, from either side.
 
-    Embree computes in float32, each kind of processor with its own rounding (1e-6 m, up to 1e-4 m at grazing incidence:
-    a thousandth of a turn of the echo's phase and more), so distances are those to the plane of the face in float64.
+    Embree computes in float32 with processor-dependent rounding (1e-6 m, up to 1e-4 m at grazing incidence, i.e. a
+    thousandth of a phase cycle and more), so distances are recomputed to the plane of the face in float64.
 
     >>> wall = RayCaster(np.array([[-1.0, 2, -1], [1, 2, -1], [0, 2, 1]]), np.array([[0, 1, 2]]))
     >>> wall.distance_m(np.zeros((2, 3)), np.array([[0.0, 1, 0], [0, -1, 0]])).tolist()
@@ -26,6 +26,12 @@ class RayCaster:
     """
 
     def __init__(self, vertices_m: Vertices, faces: Faces):
+        """Builds the acceleration structure.
+
+        Args:
+            vertices_m: Vertices in metres, (vertex, 3).
+            faces: Vertex indices of the triangles, (face, 3); may be empty.
+        """
         self.num_faces = len(faces)
         if self.num_faces == 0:
             return
@@ -43,18 +49,26 @@ class RayCaster:
         )
 
     def distance_m(self, origins: Points, directions: Points) -> PerPoint:
-        """Distance to the first face along unit directions, (point,) metres; inf where there is none."""
+        """Distance to the first face along each ray.
+
+        Args:
+            origins: Ray origins in metres, (point, 3).
+            directions: Unit vectors, (point, 3).
+
+        Returns:
+            Distance in metres, (point,); inf without a hit.
+        """
         return self.first_hit(origins, directions)[0]
 
     def first_hit(self, origins: Points, directions: Points) -> tuple[PerPoint, Int[Array, " point"]]:
-        """The first face along rays.
+        """Distance to and index of the first face along each ray.
 
         Args:
-            origins: (point, 3) in m.
-            directions: unit vectors (point, 3).
+            origins: Ray origins in metres, (point, 3).
+            directions: Unit vectors, (point, 3).
 
         Returns:
-            Distance in m and index of the face (point,); inf and -1 where there is none.
+            Distance in metres and face index, (point,); inf and -1 without a hit.
         """
         if self._is_empty(origins):
             return np.full(len(origins), np.inf), np.full(len(origins), -1)
@@ -66,21 +80,24 @@ class RayCaster:
         towards = np.einsum("ij,ij->i", normal, self._corner_m[face[hit]] - origins[hit])
         along = np.einsum("ij,ij->i", normal, np.asarray(directions, np.float64)[hit])
         exact = np.divide(towards, along, out=distance[hit], where=along != 0)
-        # The plane of a sliver of no area is nowhere.
+        # a degenerate triangle has no well-defined plane
         near = np.abs(exact - distance[hit]) < _FLOAT32_ERROR_M
         distance[hit[near]] = exact[near]
         return distance, face
 
     def is_clear(self, start: Points, end: Points, margin_m: float = 0.02) -> Bool[Array, " point"]:
-        """Whether no face lies between two points. (Embree's OCCLUDED query has no far end, hence the distance.)
+        """Tests the line of sight between pairs of points.
+
+        Embree's OCCLUDED query has no far limit, hence the distance query.
 
         Args:
-            start: (point, 3) in m.
-            end: (point, 3) in m.
-            margin_m: at either end, within which faces do not count; a segment shorter than two of them is clear.
+            start: First point in metres, (point, 3).
+            end: Second point in metres, (point, 3).
+            margin_m: Distance from either end within which faces are ignored; segments shorter than twice the margin
+                are clear. Default: 0.02 m.
 
         Returns:
-            Bool (point,).
+            Whether no face lies in between, (point,).
         """
         if self._is_empty(start):
             return np.ones(len(start), bool)
@@ -96,7 +113,7 @@ class RayCaster:
 
 @lru_cache(maxsize=1)
 def _device(process: int) -> Any:
-    """Embree's device, one a process: each takes one of a process's 1,024 keys of threads, and without it crashes."""
+    """One Embree device per process: each takes one of a process's 1,024 thread keys; running out of them crashes."""
     from embreex.rtcore import EmbreeDevice
 
     return EmbreeDevice()

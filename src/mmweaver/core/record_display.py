@@ -1,13 +1,13 @@
-"""How records show themselves: sizes and spans instead of arrays, as one line or as a table in a notebook."""
+"""Display of records: sizes and spans instead of arrays, as one line or as a table in a notebook."""
 
 import html
 
 
 class ShownByFacts:
-    """A record that shows a few facts about itself rather than all of its values."""
+    """Base of records whose repr shows a few facts instead of all values."""
 
     def facts(self) -> dict[str, str]:
-        """What is worth knowing, in few words each, by name."""
+        """Short facts by name, such as sizes and spans."""
         raise NotImplementedError
 
     def __repr__(self) -> str:
@@ -23,7 +23,15 @@ class ShownByFacts:
 
 
 def span(values: object, unit: str, decimals: int = 2) -> str:
-    """First and last of an axis with their unit.
+    """Formats length, first and last value of an axis.
+
+    Args:
+        values: Values of the axis, (n,).
+        unit: Unit that is appended.
+        decimals: Number of decimals. Default: 2.
+
+    Returns:
+        Text such as "3, 0.70 to 3.48 m".
 
     >>> import numpy as np
     >>> span(np.array([0.7, 1.0, 3.48]), "m")

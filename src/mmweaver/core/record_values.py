@@ -1,4 +1,4 @@
-"""Frozen records of numbers, texts and tables from JSON; what does not fit is one line."""
+"""Conversion of JSON values to the fields of frozen records, with one-line errors."""
 
 import dataclasses
 from types import UnionType
@@ -10,19 +10,19 @@ from mmweaver.core.errors import InputError
 
 
 def record_fields(cls: Any, values: dict[str, Any], place: str, *, partial: bool = False) -> dict[str, Any]:
-    """The arguments of a dataclass, from the content of a JSON.
+    """Converts JSON values to the arguments of a dataclass.
 
     Args:
-        cls: The dataclass; its fields are int, bool, str, float, tuples of these, tables (np.ndarray), or these | None.
-        values: Names and values; JSON has lists and whole floats where the record has tuples and floats.
-        place: The file, for errors.
-        partial: Whether required fields may be missing.
+        cls: The dataclass; fields are int, bool, str, float, tuples of these, tables (np.ndarray), or these | None.
+        values: Values by field name; JSON has lists and integers where the record has tuples and floats.
+        place: Name of the source for error messages.
+        partial: Whether required fields may be missing. Default: False.
 
     Returns:
-        The values in the types of the fields.
+        Values in the types of the fields.
 
     Raises:
-        InputError: for an unknown or missing key, and for a value of another type.
+        InputError: If a key is unknown or missing, or a value has another type.
     """
     fields = {field.name: field for field in dataclasses.fields(cls)}
     if unknown := sorted(set(values) - set(fields)):

@@ -1,7 +1,7 @@
-"""The records that packages exchange.
+"""Records that packages exchange.
 
-Frame of reference for every position: the radar's. x right, y away from the radar, z up (against gravity), metres,
-origin at the radar. Radial velocity positive = moving away.
+All positions are in the radar's frame: x right, y away from the radar, z up (against gravity), in metres, origin at the
+radar. Radial velocity is positive for receding targets.
 """
 
 from collections.abc import Callable
@@ -36,7 +36,7 @@ from mmweaver.core.shapes import (
 # Radar --------------------------------------------------------------------------------------------------------------
 @dataclass(frozen=True, kw_only=True)
 class CubeGrid:
-    """The axes of a RadarCube, one per dimension, in its order."""
+    """Axes of a RadarCube, one per dimension, in the order of its dimensions."""
 
     frame_time_s: PerFrame  # start of each frame
     range_m: PerRange
@@ -46,7 +46,16 @@ class CubeGrid:
 
     @classmethod
     def of(cls, config: RadarConfig, num_frames: int, first_frame: int = 0) -> "CubeGrid":
-        """The grid of a radar's range and Doppler FFTs for a number of frames, counted from `first_frame`."""
+        """Axes of the range-Doppler cube of a radar.
+
+        Args:
+            config: The radar.
+            num_frames: Number of frames.
+            first_frame: Index of the first frame. Default: 0.
+
+        Returns:
+            The grid.
+        """
         return cls(
             frame_time_s=np.arange(first_frame, first_frame + num_frames) * config.frame_period_s,
             range_m=config.range_m,
@@ -57,6 +66,7 @@ class CubeGrid:
 
     @property
     def shape(self) -> tuple[int, int, int, int]:
+        """Shape of the cube, (frame, range, doppler, antenna)."""
         return (len(self.frame_time_s), len(self.range_m), len(self.radial_velocity_mps), len(self.antenna_position_m))
 
 
@@ -64,8 +74,11 @@ class CubeGrid:
 class AdcCube(ShownByFacts):
     """ADC samples: complex64 (frame, loop, tx, rx, sample).
 
-    `tx` is the physical transmitter, not its place in the firing order. `scale` is the amplitude at the receiver's
-    port, in sqrt(mW), of the value 1.0; nan where it is unknown (a recording). Real samples have zero imaginary parts.
+    Attributes:
+        samples: The samples; real-valued ones have zero imaginary part. `tx` is the physical transmitter, not its
+            position in the firing order.
+        config: The radar.
+        scale: Amplitude of the value 1.0 in sqrt(mW) at the receiver input; nan if unknown (recordings).
     """
 
     samples: AdcValues
@@ -73,7 +86,7 @@ class AdcCube(ShownByFacts):
     scale: float
 
     def facts(self) -> dict[str, str]:
-        """Sizes, type and radar."""
+        """Sizes, dtype and radar."""
         names = ("frames", "loops", "transmitters", "receivers", "samples")
         sizes = {name: str(size) for name, size in zip(names, self.samples.shape, strict=True)}
         return {**sizes, "type": str(self.samples.dtype), "radar": self.config.name}
@@ -81,9 +94,9 @@ class AdcCube(ShownByFacts):
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class RadarCube(ShownByFacts):
-    """Range-Doppler spectrum of every virtual antenna: complex64 (frame, range, doppler, antenna).
+    """Range-Doppler spectrum per virtual antenna: complex64 (frame, range, doppler, antenna).
 
-    The TDM phase is compensated, so antennas of a cell differ by their positions only. `scale` as in AdcCube.
+    The TDM phase is compensated, so the antennas of a cell differ only by their positions. `scale` as in AdcCube.
     """
 
     values: CubeValues
@@ -92,7 +105,14 @@ class RadarCube(ShownByFacts):
     scale: float
 
     def select(self, frames: slice | np.ndarray) -> "RadarCube":
-        """Some of the frames, by slice or index."""
+        """Selects frames.
+
+        Args:
+            frames: Slice, mask or indices along the frame axis.
+
+        Returns:
+            Cube of these frames.
+        """
         grid = CubeGrid(
             frame_time_s=self.grid.frame_time_s[frames],
             range_m=self.grid.range_m,
@@ -103,7 +123,7 @@ class RadarCube(ShownByFacts):
         return RadarCube(values=self.values[frames], grid=grid, config=self.config, scale=self.scale)
 
     def facts(self) -> dict[str, str]:
-        """Axes, type and radar."""
+        """Axes, dtype and radar."""
         return {
             "frames": span(self.grid.frame_time_s, "s"),
             "range": span(self.grid.range_m, "m"),
@@ -116,9 +136,9 @@ class RadarCube(ShownByFacts):
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class PointCloud(ShownByFacts):
-    """Detections of all frames, one row each."""
+    """Detections of all frames, one row per point."""
 
-    frame: np.ndarray  # (point,) int, index of the frame
+    frame: np.ndarray  # (point,) int, frame index
     x_m: PerPoint
     y_m: PerPoint
     z_m: PerPoint
@@ -127,20 +147,27 @@ class PointCloud(ShownByFacts):
 
     @property
     def xyz_m(self) -> np.ndarray:
-        """Places (point, 3)."""
+        """Positions in metres, (point, 3)."""
         return np.stack([self.x_m, self.y_m, self.z_m], axis=1)
 
     @property
     def range_m(self) -> np.ndarray:
-        """Distance of each point from the radar, (point,)."""
+        """Range of each point in metres, (point,)."""
         return np.sqrt(self.x_m**2 + self.y_m**2 + self.z_m**2)
 
     def select(self, which: np.ndarray) -> "PointCloud":
-        """The points selected by mask or index (point,)."""
+        """Selects points.
+
+        Args:
+            which: Mask or indices, (point,).
+
+        Returns:
+            The selected points.
+        """
         return PointCloud(**{field.name: getattr(self, field.name)[which] for field in fields(PointCloud)})
 
     def facts(self) -> dict[str, str]:
-        """Number of points, and their bounds."""
+        """Number of points and their bounds."""
         bounds = {"x": (self.x_m, "m"), "y": (self.y_m, "m"), "z": (self.z_m, "m")}
         bounds |= {"velocity": (self.radial_velocity_mps, "m/s"), "SNR": (self.snr_db, "dB")}
         return {
@@ -153,16 +180,16 @@ class PointCloud(ShownByFacts):
 # Motion -------------------------------------------------------------------------------------------------------------
 @dataclass(frozen=True, kw_only=True, repr=False)
 class PoseSequence(ShownByFacts):
-    """Joints of one person at given times, in the radar's frame; SMPL order, see core.skeleton.
+    """Joints of one person over time in the radar's frame, in SMPL order (`core.skeleton`).
 
-    Motions are sampled densely (100 Hz and more), so that slow time can be interpolated; results hold a sequence
+    Motions are sampled densely (100 Hz or more) so that slow time can be interpolated; results contain a sequence
     resampled at the radar's frames.
     """
 
     time_s: PerFrame
     joints_m: Joints
     height_m: float
-    subject: int = 0  # identifies the body: its surface points and random phases
+    subject: int = 0  # identifies the body: surface points and speckle
     girth: float = 1.0  # thickness of trunk and limbs relative to the average body of this height
 
     def facts(self) -> dict[str, str]:
@@ -178,7 +205,7 @@ class PoseSequence(ShownByFacts):
 # Scene --------------------------------------------------------------------------------------------------------------
 @dataclass(frozen=True, kw_only=True)
 class CameraIntrinsics:
-    """A pinhole camera, in pixels of its picture; pixel centres are at whole numbers."""
+    """Pinhole camera in pixels of its picture; pixel centres are at integers."""
 
     fx: float
     fy: float
@@ -190,7 +217,7 @@ class CameraIntrinsics:
 
 @dataclass(frozen=True, kw_only=True)
 class ClassMask:
-    """The class of each pixel, with names of COCO-Stuff ("couch", "wall-concrete")."""
+    """Semantic class of each pixel, with names of COCO-Stuff ("couch", "wall-concrete")."""
 
     index: ClassPixels  # into `names`; 0 = unknown
     names: tuple[str, ...]  # names[0] is "unlabeled"
@@ -198,7 +225,7 @@ class ClassMask:
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class RgbdPhoto(ShownByFacts):
-    """A colour picture and its depth along the optical axis in metres; nan = no measurement."""
+    """Colour picture with depth along the optical axis in metres; nan = no measurement."""
 
     rgb: RgbPixels
     depth_m: DepthPixels
@@ -206,7 +233,7 @@ class RgbdPhoto(ShownByFacts):
     classes: ClassMask | None = None  # given by the user or by a segmenter
 
     def facts(self) -> dict[str, str]:
-        """Size, share of pixels with a depth, number of classes."""
+        """Size, share of pixels with depth, number of classes."""
         height, width = self.depth_m.shape
         return {
             "size": f"{width} x {height} pixels",
@@ -217,7 +244,7 @@ class RgbdPhoto(ShownByFacts):
 
 @dataclass(frozen=True, kw_only=True)
 class Plane:
-    """A planar rectangle of the room. axis_u, axis_v and normal are a right-handed orthonormal triple."""
+    """A planar rectangle of the room; axis_u, axis_v and normal form a right-handed orthonormal basis."""
 
     kind: str  # floor | ceiling | wall | top | panel
     centre_m: Vec3
@@ -229,22 +256,39 @@ class Plane:
 
     @property
     def area_m2(self) -> float:
+        """Area in square metres."""
         return 4 * self.half_size_m[0] * self.half_size_m[1]
 
     @property
     def corners_m(self) -> np.ndarray:
-        """(4, 3), counterclockwise seen from the free side."""
+        """Corners in metres, (4, 3), counterclockwise seen from the free side."""
         u, v = self.half_size_m[0] * self.axis_u, self.half_size_m[1] * self.axis_v
         return np.stack([self.centre_m - u - v, self.centre_m + u - v, self.centre_m + u + v, self.centre_m - u + v])
 
     def spanned(self, low_m: np.ndarray | tuple[float, float], high_m: np.ndarray | tuple[float, float]) -> "Plane":
-        """The rectangle from `low_m` to `high_m`, (2,) along axis_u and axis_v, from this one's centre."""
+        """Rectangle in the same plane between two corners.
+
+        Args:
+            low_m: Lower corner along axis_u and axis_v relative to the centre, metres, (2,).
+            high_m: Upper corner, in the same way.
+
+        Returns:
+            The rectangle.
+        """
         (left, below), (right, above) = low_m, high_m
         centre_m = self.centre_m + (left + right) / 2 * self.axis_u + (below + above) / 2 * self.axis_v
         return replace(self, centre_m=centre_m, half_size_m=(float(right - left) / 2, float(above - below) / 2))
 
     def moved(self, points: Callable[[Vec3], Vec3], directions: Callable[[Vec3], Vec3]) -> "Plane":
-        """The rectangle in another frame, by what moves its points and what turns its directions."""
+        """Transforms the rectangle to another frame.
+
+        Args:
+            points: Maps a point (3,) in metres.
+            directions: Maps a direction (3,), without translation.
+
+        Returns:
+            The rectangle in the other frame.
+        """
         return replace(
             self,
             centre_m=points(self.centre_m),
@@ -256,13 +300,13 @@ class Plane:
 
 @dataclass(frozen=True, kw_only=True)
 class FreeSpace:
-    """The places of the floor where a body may stand, on a square grid."""
+    """Floor positions where a body may stand, on a square grid."""
 
     x_m: np.ndarray  # (x,) centres of the columns
     y_m: np.ndarray  # (y,) centres of the rows
     is_free: GridMask  # free from the floor to head height
-    is_seen: GridMask  # measured; a free cell that is not seen is assumed to be free
-    is_assumed: GridMask | None = None  # probably free, though not seen to be: the last resort for a motion
+    is_seen: GridMask  # measured; unseen free cells are assumed to be free
+    is_assumed: GridMask | None = None  # unseen but probably free; last resort of motion planning
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -270,8 +314,8 @@ class Seat:
     """A horizontal surface at seat height."""
 
     position_m: Vec3  # middle of the seat, on the surface
-    facing_rad: float  # of the sitter, from +x (right) towards +y (away from the radar)
-    size_m: tuple[float, float]  # across and along the facing
+    facing_rad: float  # direction of the sitter, from +x (right) towards +y (away from the radar)
+    size_m: tuple[float, float]  # across and along that direction
 
 
 LANDMARK_KINDS = (
@@ -298,17 +342,17 @@ LANDMARK_KINDS = (
 
 @dataclass(frozen=True, kw_only=True)
 class Landmark:
-    """An object that a sentence may name as a place to go to."""
+    """An object that a sentence may name as a destination."""
 
-    kind: str  # one of LANDMARK_KINDS; in a photo door | window | table | counter | bed are found
-    position_m: Vec3  # its middle
-    approach_m: tuple[float, float]  # (x, y) where one stands to use it
-    facing_rad: float  # of a person there, from +x (right) towards +y (away from the radar)
+    kind: str  # one of LANDMARK_KINDS; photos yield door | window | table | counter | bed
+    position_m: Vec3  # centre
+    approach_m: tuple[float, float]  # (x, y) of a person using it
+    facing_rad: float  # direction of that person, from +x (right) towards +y (away from the radar)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Scene(ShownByFacts):
-    """A room, reconstructed from a photo or procedural, for ray casting and motion planning; in the radar's frame."""
+    """A room for ray casting and motion planning, reconstructed from a photo or procedural, in the radar's frame."""
 
     photo: RgbdPhoto
     radar_from_camera: Rotation  # camera x right, y down, z forward -> radar frame
@@ -317,12 +361,12 @@ class Scene(ShownByFacts):
     face_material: PerFace  # index into material_names
     material_names: tuple[str, ...]
     planes: tuple[Plane, ...]  # including the floor
-    floor_z_m: float  # below the radar, so negative
+    floor_z_m: float  # negative: below the radar
     free_space: FreeSpace
     seats: tuple[Seat, ...]
     assumptions: tuple[str, ...]  # sentences for meta.json
     landmarks: tuple[Landmark, ...] = ()
-    radar_pose: RadarPose = AT_CAMERA  # of the radar whose frame this is; the photo is always the camera's
+    radar_pose: RadarPose = AT_CAMERA  # pose of the radar that defines the frame; the photo is always the camera's
 
     def facts(self) -> dict[str, str]:
         """Sizes, planes, seats and landmarks."""
@@ -336,11 +380,12 @@ class Scene(ShownByFacts):
 
     @property
     def floor(self) -> Plane:
+        """The floor plane."""
         return next(plane for plane in self.planes if plane.kind == "floor")
 
 
 def _counted(kinds: list[str]) -> str:
-    """The counts of kinds as a string: "floor, 3 wall" for ["wall", "floor", "wall", "wall"]."""
+    """Formats the counts of kinds: "floor, 3 wall" for ["wall", "floor", "wall", "wall"]."""
     counts = {kind: kinds.count(kind) for kind in sorted(set(kinds))}
     return ", ".join(kind if count == 1 else f"{count} {kind}" for kind, count in counts.items()) or "none"
 

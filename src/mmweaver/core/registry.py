@@ -1,4 +1,4 @@
-"""Names that arrive from outside as strings: built in, registered by a program, or found in an installed plug-in."""
+"""Registries of entries selected by name: built in, registered by a program, or provided by an installed plug-in."""
 
 from collections.abc import Iterator, Mapping
 from functools import cached_property
@@ -13,13 +13,20 @@ Entry = TypeVar("Entry")
 
 
 class Registry(Mapping[str, Entry]):
-    """A table from name to entry; an unknown name is an InputError.
-
-    `entry_points`: the group of entry points in which installed packages may offer further entries. These are looked
-    up only for names that are not built in, and loaded when they are first used.
-    """
+    """Mapping from name to entry that raises InputError for unknown names."""
 
     def __init__(self, kind: str, entries: list[tuple[str, Entry]], *, entry_points: str | None = None):
+        """Creates a registry.
+
+        Args:
+            kind: What the entries are, for error messages.
+            entries: Built-in (name, entry) pairs.
+            entry_points: Entry-point group through which installed packages provide further entries; these are looked
+                up only for names that are not built in, and loaded at first use. Default: no plug-ins.
+
+        Raises:
+            RuntimeError: If two built-in entries share a name.
+        """
         self.kind = kind
         self._group = entry_points
         self._entries: dict[str, Entry] = {}
@@ -29,14 +36,14 @@ class Registry(Mapping[str, Entry]):
             self._entries[name] = entry
 
     def register(self, name: str, entry: Entry) -> None:
-        """Adds an entry; the same entry again changes nothing.
+        """Adds an entry; registering the same entry again has no effect.
 
         Args:
-            name: Its name.
+            name: Name of the entry.
             entry: The entry.
 
         Raises:
-            InputError: for a name that is taken.
+            InputError: If the name is taken by another entry.
         """
         if self._entries.get(name, entry) is not entry:
             raise InputError(f"there is a {self.kind} {name!r} already; choose another name")
@@ -64,7 +71,14 @@ class Registry(Mapping[str, Entry]):
 
 
 def plugins(group: str) -> "dict[str, EntryPoint]":
-    """The entry points of a group, by name; of two with one name the first found."""
+    """Lists the entry points of a group.
+
+    Args:
+        group: Name of the group.
+
+    Returns:
+        Entry points by name; the first one found wins.
+    """
     from importlib.metadata import entry_points
 
     found: dict[str, EntryPoint] = {}
@@ -74,7 +88,17 @@ def plugins(group: str) -> "dict[str, EntryPoint]":
 
 
 def load_plugin(plugin: "EntryPoint") -> Any:
-    """What an entry point names. Raises InputError where it cannot be imported."""
+    """Imports the object of an entry point.
+
+    Args:
+        plugin: The entry point.
+
+    Returns:
+        The object.
+
+    Raises:
+        InputError: If it cannot be imported.
+    """
     try:
         return plugin.load()
     except Exception as error:  # a plug-in can fail in any way

@@ -1,4 +1,4 @@
-"""Files that a clone of the repository holds and the installed package does not, for their size."""
+"""Files that are part of a repository clone but, because of their size, not of the installed package."""
 
 from pathlib import Path
 
@@ -8,9 +8,18 @@ WEIGHTS = Path(__file__).resolve().parents[3] / "weights"
 
 
 def repository_file(name: str, what: str, otherwise: str) -> Path:
-    """Place of a file, such as "motiongpt_small.safetensors", in the folder weights/ of the repository.
+    """Locates a file in the weights/ folder of the repository.
 
-    Raises InputError where mmweaver runs without a clone: `what` is the subject of its line, `otherwise` what to do.
+    Args:
+        name: File name, such as "motiongpt_small.safetensors".
+        what: Subject of the error message.
+        otherwise: Advice of the error message.
+
+    Returns:
+        Path of the file.
+
+    Raises:
+        InputError: If mmweaver runs without a clone.
     """
     path = WEIGHTS / name
     if not path.is_file():

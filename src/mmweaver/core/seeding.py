@@ -1,4 +1,4 @@
-"""Random streams: one seed, one independent stream for each named purpose."""
+"""Named random streams: one independent stream per purpose, all derived from one seed."""
 
 import hashlib
 
@@ -6,13 +6,13 @@ import numpy as np
 
 
 def stream(seed: int, *purpose: str | int) -> np.random.Generator:
-    """A random generator that depends only on the seed and the purpose.
+    """Creates a random generator that depends only on seed and purpose.
 
     Purposes never share random numbers, so sampling more for one leaves the others unchanged.
 
     Args:
-        seed: The seed of a run.
-        *purpose: What the numbers are for: words, and indices where there are several.
+        seed: Seed of the run.
+        *purpose: Words that name the purpose, and indices if there are several.
 
     Returns:
         The generator.

@@ -1,10 +1,10 @@
-"""Aliases of array shapes, checked in every test run (jaxtyping + beartype)."""
+"""Array shape aliases, checked at run time in every test (jaxtyping and beartype)."""
 
 import numpy as np
 from jaxtyping import Bool, Complex, Float, Int, UInt8
 
 Array = np.ndarray
-Values = np.ndarray | np.number  # any shape, a single number too
+Values = np.ndarray | np.number  # any shape, including scalars
 
 # one axis
 PerFrame = Float[Array, " frame"]

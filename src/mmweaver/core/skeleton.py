@@ -1,4 +1,4 @@
-"""The 22-joint skeleton, in SMPL order (Loper et al. 2015; HumanML3D keeps the same 22)."""
+"""The 22-joint skeleton in SMPL order (Loper et al. 2015; HumanML3D uses the same 22 joints)."""
 
 JOINT_NAMES = (
     "pelvis",
@@ -30,7 +30,13 @@ BONES = tuple((parent, child) for child, parent in enumerate(PARENTS) if parent 
 
 
 def joint(name: str) -> int:
-    """Index of a joint by its name.
+    """Index of a joint.
+
+    Args:
+        name: Name in `JOINT_NAMES`.
+
+    Returns:
+        Index from 0 to 21.
 
     >>> joint("left_wrist")
     20

@@ -13,16 +13,16 @@ _LOG = logging.getLogger(__name__)
 
 @lru_cache(maxsize=1)
 def _thread_pools(modules: int) -> Any:
-    """The thread pools of the libraries that are loaded with so many modules: finding them takes 4 ms."""
+    """Thread pools of the loaded libraries, cached per number of modules: the search takes 4 ms."""
     from threadpoolctl import ThreadpoolController
 
     return ThreadpoolController()
 
 
 class Stages:
-    """Times the named stages of a long job and calls a listener with the name of each as it begins.
+    """Times the named stages of a long job and notifies a listener at the start of each.
 
-    A stage runs on one BLAS thread: the matrices here are small, and several threads took 4 to 15 times the CPU time.
+    A stage runs on one BLAS thread: the matrices are small, and several threads took 4 to 15 times the CPU time.
 
     >>> heard = []
     >>> stages = Stages(heard.append)
@@ -33,12 +33,21 @@ class Stages:
     """
 
     def __init__(self, listener: Callable[[str], object] | None = None):
+        """Creates a timer.
+
+        Args:
+            listener: Called with the name of each stage as it begins. Default: none.
+        """
         self.seconds: dict[str, float] = {}
         self._listener = listener
 
     @contextmanager
     def __call__(self, name: str) -> Iterator[None]:
-        """Times one stage; the time of a repeated stage is added up."""
+        """Context that times one stage; times of repeated stages accumulate in `seconds`.
+
+        Args:
+            name: Name of the stage.
+        """
         if self._listener is not None:
             self._listener(name)
         start = perf_counter()

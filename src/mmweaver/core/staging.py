@@ -1,9 +1,9 @@
-"""Temporary names of unfinished files and folders, and what sets right what a killed process left.
+"""Temporary names of unfinished files and folders, and cleanup after killed processes.
 
-    .walk.mmweaver-1f3a09c2-4711-88342-3.png     place, process, its start, a running number
+    .walk.mmweaver-1f3a09c2-4711-88342-3.png     place, process id, process start, running number
 
-A process is known by its number and the time at which it started, for numbers are used again. The place is the host and
-its process namespace: on a shared disk, what another host left is removed when nothing in it has changed for an hour.
+A process is identified by id and start time, since ids are reused. The place is the host and its PID namespace: on a
+shared disk, leftovers of another host are removed once nothing in them has changed for an hour.
 """
 
 import contextlib
@@ -19,16 +19,23 @@ from functools import cache
 from pathlib import Path
 
 ABANDONED_S = 3600.0
-COMMITTED = ".mmweaver-committed"  # in a folder: complete new files that are being moved into place
-MAX_NAME = 60  # characters of the name that are kept, for file systems allow 255 bytes in all
+COMMITTED = ".mmweaver-committed"  # subfolder of complete new files that are being moved into place
+MAX_NAME = 60  # characters of the name that are kept; file systems allow 255 bytes in total
 STAGED = re.compile(r"\..*\.mmweaver-(?P<place>[0-9a-f]{8})-(?P<process>\d+)-(?P<start>\d+)-\d+(\.[^.]{1,16})?")
-_PAUSES_S = (0.0, 0.02, 0.05, 0.1, 0.5, 1.0)  # threads of Zarr may still add files after one write has failed
+_PAUSES_S = (0.0, 0.02, 0.05, 0.1, 0.5, 1.0)  # Zarr threads may still add files after a write has failed
 _number = itertools.count()
 _swept: set[tuple[int, str]] = set()
 
 
 def staging_path(path: Path) -> Path:
-    """A new temporary name next to `path`, with its suffix."""
+    """Creates a new temporary name in the same folder, with the same suffix.
+
+    Args:
+        path: Final path.
+
+    Returns:
+        Temporary path; nothing is created.
+    """
     suffix = path.suffix if len(path.suffix) <= 16 else ""
     stem = path.name.removesuffix(suffix).lstrip(".")[:MAX_NAME]
     while len(stem.encode()) > 2 * MAX_NAME:
@@ -38,12 +45,19 @@ def staging_path(path: Path) -> Path:
 
 
 def is_staged(name: str) -> bool:
-    """Whether this is the name of something unfinished."""
+    """Whether a file name is that of an unfinished file or folder."""
     return STAGED.fullmatch(name) is not None
 
 
 def is_being_written(staged: Path) -> bool:
-    """Whether something unfinished belongs to a process that still runs here, or may run on another host."""
+    """Whether an unfinished file belongs to a running process.
+
+    Args:
+        staged: The unfinished file or folder.
+
+    Returns:
+        True if its process runs on this host, or if it belongs to another host and changed within the last hour.
+    """
     found = STAGED.fullmatch(staged.name)
     if found is None:
         return False
@@ -60,7 +74,12 @@ def is_being_written(staged: Path) -> bool:
 
 
 def sweep(folder: Path, *, again: bool = False) -> None:
-    """Removes what killed processes left in a folder; once a process and folder, unless `again`."""
+    """Removes leftovers of killed processes from a folder.
+
+    Args:
+        folder: The folder.
+        again: Whether to repeat it for a folder that this process has already swept. Default: False.
+    """
     key = (os.getpid(), str(folder))
     if key in _swept and not again:
         return
@@ -76,7 +95,7 @@ def sweep(folder: Path, *, again: bool = False) -> None:
 
 
 def remove(path: Path) -> None:
-    """Removes a file or a folder, as far as it can be; when it is interrupted, before it lets itself be."""
+    """Removes a file or folder as far as possible; a keyboard interrupt takes effect only afterwards."""
     try:
         _remove(path)
     except KeyboardInterrupt:
@@ -97,12 +116,19 @@ def _remove(path: Path) -> None:
 
 
 def finish_moving(folder: Path) -> None:
-    """Moves the rest of complete new files into place, where a kill has interrupted that. Raises OSError."""
+    """Completes an interrupted move of new files into place.
+
+    Args:
+        folder: The folder that is being filled.
+
+    Raises:
+        OSError: If a file cannot be moved.
+    """
     committed = folder / COMMITTED
     if not committed.is_dir():
         return
     try:
-        # the checksums first: until all files are there, those that are missing or old do not match
+        # checksums first: until all files are in place, missing or old ones do not match
         for file in sorted(committed.iterdir(), key=lambda file: file.name != "SHA256SUMS"):
             place = folder / file.name
             if place.is_dir() and file.is_dir():
@@ -115,7 +141,7 @@ def finish_moving(folder: Path) -> None:
 
 
 def sync_tree(folder: Path) -> None:
-    """Brings all files and folders below to the disk."""
+    """Syncs all files and folders below a folder to disk."""
     for place, _, files in os.walk(folder, topdown=False):
         for name in files:
             sync(Path(place) / name)
@@ -123,7 +149,14 @@ def sync_tree(folder: Path) -> None:
 
 
 def sync(path: Path) -> None:
-    """Brings a file's bytes, or a folder's names, to the disk."""
+    """Syncs a file's bytes, or a folder's entries, to disk.
+
+    Args:
+        path: File or folder.
+
+    Raises:
+        OSError: If the file system reports a failure.
+    """
     is_folder = path.is_dir()
     if is_folder and os.name == "nt":
         return  # Windows has no such call for folders
@@ -138,7 +171,7 @@ def sync(path: Path) -> None:
 
 
 def _age_s(path: Path) -> float:
-    """Seconds since anything in a file or folder changed; 0 where it is gone."""
+    """Seconds since the last change in a file or folder; 0 if it no longer exists."""
     newest = 0.0
     for place in (path, *path.rglob("*")):
         try:
@@ -158,7 +191,7 @@ def _place() -> str:
 
 
 def _start_of(process: int) -> int:
-    """When a process started, in clock ticks since the host did; 0 where that cannot be known, -1 of a dead one."""
+    """Start of a process in clock ticks since boot; 0 if unknown, -1 if it has ended."""
     try:
         state, *fields = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
     except OSError:

@@ -1,6 +1,6 @@
-"""Tensors as safetensors files: the same tensors give the same bytes, and damage is noticed.
+"""Tensors as safetensors files: byte-for-byte reproducible, with damage detection.
 
-The header holds the sha256 of the tensors and whatever the caller adds.
+The header contains the SHA-256 of the tensors and metadata of the caller.
 """
 
 import hashlib
@@ -20,15 +20,15 @@ SHA256 = "sha256"  # in the header
 
 
 def write_tensors(file: Path, tensors: "dict[str, Tensor]", header: dict[str, str] | None = None) -> None:
-    """Writes tensors and their sha256, whole or not at all.
+    """Writes tensors and their SHA-256 atomically.
 
     Args:
         file: The safetensors file.
         tensors: Tensors by name.
-        header: Further metadata.
+        header: Further metadata. Default: none.
 
     Raises:
-        InputError: where they cannot be written.
+        InputError: If the file cannot be written.
     """
     from safetensors.torch import save
 
@@ -39,16 +39,16 @@ def write_tensors(file: Path, tensors: "dict[str, Tensor]", header: dict[str, st
 
 
 def read_tensors(file: Path) -> "tuple[dict[str, Tensor], dict[str, str]]":
-    """Reads what `write_tensors` wrote.
+    """Reads the output of `write_tensors`.
 
     Args:
         file: The safetensors file.
 
     Returns:
-        The tensors by name, and the metadata.
+        Tensors by name, and the metadata.
 
     Raises:
-        InputError: for a damaged or missing file, or values that are not finite.
+        InputError: If the file is missing or damaged, or a value is not finite.
     """
     tensors, header = safe_tensors.read_tensors(file)
     if header.get(SHA256, "") not in ("", sha256_of(tensors)):
@@ -57,7 +57,14 @@ def read_tensors(file: Path) -> "tuple[dict[str, Tensor], dict[str, str]]":
 
 
 def sha256_of(tensors: "dict[str, Tensor]") -> str:
-    """The sha256 of names, types, shapes and values."""
+    """Hashes tensors including their names, dtypes and shapes.
+
+    Args:
+        tensors: Tensors by name.
+
+    Returns:
+        SHA-256, hexadecimal; independent of the order of names.
+    """
     import torch
 
     digest = hashlib.sha256()
@@ -71,7 +78,7 @@ def sha256_of(tensors: "dict[str, Tensor]") -> str:
 
 
 def _sort_metadata(data: bytes) -> bytes:
-    """Sorts the entries of `__metadata__`, which safetensors writes in an order that differs from run to run.
+    """Sorts the entries of `__metadata__`, whose order safetensors varies from run to run.
 
     Reference: safetensors format: 8 bytes of length, a JSON header padded with spaces, the data.
     """

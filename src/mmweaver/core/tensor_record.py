@@ -1,11 +1,12 @@
-"""Frozen dataclasses of torch tensors that are moved, stacked, joined and indexed as one."""
+"""Frozen dataclasses of tensors or arrays that are moved, stacked, joined and indexed as one."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
+import numpy as np
+
 if TYPE_CHECKING:
-    import torch
     from torch import Tensor
 
 RecordT = TypeVar("RecordT", bound="TensorRecord")
@@ -13,9 +14,9 @@ RecordT = TypeVar("RecordT", bound="TensorRecord")
 
 @dataclass(frozen=True, kw_only=True)
 class TensorRecord:
-    """Base of records whose fields are tensors that share their leading axes.
+    """Base of records whose fields are tensors, or numpy arrays, that share their leading axes.
 
-    Operations apply to every tensor and to nested records; None and other values stay as they are, taken from the first
+    Operations apply to every one and to nested records; None and other values stay as they are, taken from the first
     record where several are combined.
 
     >>> import torch
@@ -28,31 +29,48 @@ class TensorRecord:
     """
 
     def map(self: RecordT, function: Callable[["Tensor"], "Tensor"]) -> RecordT:
-        """The record with `function` applied to each tensor."""
+        """Applies a function to each tensor.
+
+        Args:
+            function: Maps a tensor to a tensor.
+
+        Returns:
+            The record of results.
+        """
         values = {name: _mapped(getattr(self, name), function) for name in self.__dataclass_fields__}
         return type(self)(**values)  # `replace` takes twice as long
 
     def to(self: RecordT, *target: Any, **options: Any) -> RecordT:
-        """The record on another device or of another type; arguments are those of `Tensor.to`."""
+        """Moves or converts each tensor; arguments are those of `Tensor.to`."""
         return self.map(lambda tensor: tensor.to(*target, **options))
 
     def __getitem__(self: RecordT, index: Any) -> RecordT:
-        """Every tensor indexed along the axes the record's tensors share."""
+        """Indexes each tensor along the shared leading axes."""
         return self.map(lambda tensor: tensor[index])
 
     @classmethod
     def stack(cls: type[RecordT], records: Sequence[RecordT]) -> RecordT:
-        """Records of equal shapes along a new leading axis."""
+        """Records of tensors of equal shapes along a new leading axis."""
         import torch
 
         return _combined(records, torch.stack)
 
     @classmethod
     def cat(cls: type[RecordT], records: Sequence[RecordT], dim: int = 0) -> RecordT:
-        """Records joined along an axis they all have; `dim` counts from the front, for the axes are shared there."""
+        """Concatenates records along a shared axis.
+
+        Args:
+            records: Records of one type.
+            dim: Axis, counted from the front. Default: 0.
+
+        Returns:
+            The combined record.
+        """
         import torch
 
-        return _combined(records, lambda tensors: torch.cat(tensors, dim))
+        return _combined(
+            records, lambda parts: (np.concatenate if isinstance(parts[0], np.ndarray) else torch.cat)(parts, dim)
+        )
 
 
 def _mapped(value: Any, function: Callable[["Tensor"], "Tensor"]) -> Any:
@@ -60,10 +78,10 @@ def _mapped(value: Any, function: Callable[["Tensor"], "Tensor"]) -> Any:
 
     if isinstance(value, TensorRecord):
         return value.map(function)
-    return function(value) if isinstance(value, torch.Tensor) else value
+    return function(value) if isinstance(value, (torch.Tensor, np.ndarray)) else value
 
 
-def _combined(records: Sequence[RecordT], join: Callable[[list["torch.Tensor"]], "torch.Tensor"]) -> RecordT:
+def _combined(records: Sequence[RecordT], join: Callable[[list[Any]], Any]) -> RecordT:
     import torch
 
     first = records[0]
@@ -73,5 +91,5 @@ def _combined(records: Sequence[RecordT], join: Callable[[list["torch.Tensor"]],
         if isinstance(each[0], TensorRecord):
             values[name] = _combined(each, join)
         else:
-            values[name] = join(each) if isinstance(each[0], torch.Tensor) else each[0]
+            values[name] = join(each) if isinstance(each[0], (torch.Tensor, np.ndarray)) else each[0]
     return type(first)(**values)

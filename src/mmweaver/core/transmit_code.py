@@ -1,9 +1,9 @@
-"""Simultaneous transmitters: what each chirp of a loop sends, and how the transmitters are separated again.
+"""Simultaneous transmitters: the transmit code of a loop and the separation of its transmitters.
 
-A loop has slots, one chirp each; in slot s transmitter m sends with the complex weight W[s, m] (0: off). TDM-MIMO is a
-permutation, BPM-MIMO a Hadamard matrix, a steered beam one row of phases. Where W has as many independent rows as
-transmitters, its pseudo-inverse separates them; otherwise each slot is one transmitter of its own, a beam, which is
-possible where no transmitter is part of two beams.
+A loop consists of slots, one chirp each; in slot s transmitter m sends with the complex weight W[s, m] (0: off).
+TDM-MIMO is a permutation, BPM-MIMO a Hadamard matrix, a steered beam one row of phases. If W has as many independent
+rows as transmitters, its pseudo-inverse separates them; otherwise each slot is a virtual transmitter of its own (a
+beam), which requires that no transmitter is part of two beams.
 
 Reference: TI SWRA554, MIMO Radar; TI SWRU544, mmWave SDK User Guide (bpmCfg).
 """
@@ -17,7 +17,13 @@ HALF_AMPLITUDE = 0.5  # weights are on or off
 
 
 def tx_code_of(weights: np.ndarray) -> TxCode:
-    """Complex weights (slot, tx) as a radar file has them.
+    """Converts complex weights to the format of radar files.
+
+    Args:
+        weights: Complex weights, (slot, tx).
+
+    Returns:
+        Real and imaginary parts as nested tuples.
 
     >>> tx_code_of(np.array([[1, 1], [1, -1]]))
     (((1.0, 0.0), (1.0, 0.0)), ((1.0, 0.0), (-1.0, 0.0)))
@@ -26,26 +32,26 @@ def tx_code_of(weights: np.ndarray) -> TxCode:
 
 
 def weights_of(code: TxCode) -> np.ndarray:
-    """The complex weights (slot, tx) of a code."""
+    """Complex weights of a code, (slot, tx); inverse of `tx_code_of`."""
     return np.array([[complex(*one) for one in row] for row in code])
 
 
 def separates_transmitters(weights: np.ndarray) -> bool:
-    """Whether every transmitter can be decoded from the slots."""
+    """Whether the weights (slot, tx) have full column rank, so that every transmitter can be decoded."""
     return bool(np.linalg.matrix_rank(weights) == weights.shape[1])
 
 
 def decoder(weights: np.ndarray) -> np.ndarray:
-    """The matrix that turns slots into transmitters, or into beams of phase 0 at their centre.
+    """Matrix from slots to transmitters, or to beams with zero phase at their phase centre.
 
     Args:
-        weights: Complex weights (slot, tx).
+        weights: Complex weights, (slot, tx).
 
     Returns:
-        Matrix (virtual tx, slot).
+        Decoding matrix, (virtual tx, slot).
 
     Raises:
-        InputError: where transmitters can be neither separated nor assigned to one beam each.
+        InputError: If transmitters can neither be separated nor assigned to one beam each.
 
     >>> decoder(np.array([[1, 1], [1, -1]])).real
     array([[ 0.5,  0.5],
@@ -64,7 +70,15 @@ def decoder(weights: np.ndarray) -> np.ndarray:
 
 
 def virtual_tx_m(weights: np.ndarray, tx_m: np.ndarray) -> np.ndarray:
-    """Positions (virtual tx, 3) of the decoded transmitters, or of the beams' phase centres."""
+    """Positions of the decoded transmitters, or of the phase centres of beams.
+
+    Args:
+        weights: Complex weights, (slot, tx).
+        tx_m: Positions of the physical transmitters in metres, (tx, 3).
+
+    Returns:
+        Positions in metres, (virtual tx, 3).
+    """
     if separates_transmitters(weights):
         return tx_m
     share = np.abs(weights)

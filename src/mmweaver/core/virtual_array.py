@@ -1,4 +1,4 @@
-"""Virtual antennas for azimuth and for elevation."""
+"""Selection of virtual antennas for azimuth and elevation."""
 
 from dataclasses import dataclass
 
@@ -7,28 +7,28 @@ import numpy as np
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.shapes import AntennaPositions, PerIndex
 
-# Places closer than this share of a wavelength count as one place.
+# Antennas closer than this share of a wavelength count as one position.
 SAME_PLACE_WAVELENGTHS = 0.05
 
 
 @dataclass(frozen=True, kw_only=True)
 class RowPair:
-    """Antennas of two rows above one another, column by column."""
+    """Antennas of two horizontal rows, paired by column."""
 
     lower: PerIndex
     upper: PerIndex
-    spacing_m: float  # upper row above lower row
+    spacing_m: float  # vertical spacing
 
 
 def azimuth_row(position_m: AntennaPositions, wavelength_m: float) -> PerIndex:
-    """The row of antennas that measures azimuth.
+    """Selects the row of antennas that measures azimuth.
 
     Args:
-        position_m: Virtual antennas (antenna, 3), m.
-        wavelength_m: Wavelength, m.
+        position_m: Virtual antennas in metres, (antenna, 3).
+        wavelength_m: Wavelength in metres.
 
     Returns:
-        Antennas, left to right, of the horizontal row that spans the most; the lowest of equals.
+        Indices from left to right of the horizontal row with the largest aperture; the lowest one in a tie.
 
     >>> from mmweaver.core.presets import AWR1843
     >>> azimuth_row(AWR1843.antenna_position_m, AWR1843.wavelength_m).tolist()
@@ -39,14 +39,14 @@ def azimuth_row(position_m: AntennaPositions, wavelength_m: float) -> PerIndex:
 
 
 def elevation_rows(position_m: AntennaPositions, wavelength_m: float) -> RowPair | None:
-    """The two rows of antennas whose phase difference measures elevation.
+    """Selects the two rows of antennas whose phase difference measures elevation.
 
     Args:
-        position_m: Virtual antennas (antenna, 3), m.
-        wavelength_m: Wavelength, m.
+        position_m: Virtual antennas in metres, (antenna, 3).
+        wavelength_m: Wavelength in metres.
 
     Returns:
-        The rows that share the most columns (the closest of equals); None where no column has two antennas.
+        The rows with the most common columns (the closest in a tie); None if no column has two antennas.
     """
     rows = _rows(position_m, wavelength_m)
     pairs = [_pair(position_m, wavelength_m, low, high) for at, low in enumerate(rows) for high in rows[at + 1 :]]
@@ -55,14 +55,14 @@ def elevation_rows(position_m: AntennaPositions, wavelength_m: float) -> RowPair
 
 
 def elevation_columns(position_m: AntennaPositions, wavelength_m: float) -> list[PerIndex]:
-    """The columns of antennas that resolve elevation.
+    """Selects the columns of antennas that resolve elevation.
 
     Args:
-        position_m: Virtual antennas (antenna, 3), m.
-        wavelength_m: Wavelength, m.
+        position_m: Virtual antennas in metres, (antenna, 3).
+        wavelength_m: Wavelength in metres.
 
     Returns:
-        Antennas of each of the tallest columns, from below; empty where no two antennas stand above one another.
+        Indices from bottom to top of each of the tallest columns; empty if no two antennas share a column.
 
     >>> from mmweaver.core.presets import AWR1843
     >>> [column.tolist() for column in elevation_columns(AWR1843.antenna_position_m, AWR1843.wavelength_m)]
@@ -73,7 +73,7 @@ def elevation_columns(position_m: AntennaPositions, wavelength_m: float) -> list
     across_m = position_m[order, 0]
     columns = []
     for column in np.split(order, np.flatnonzero(np.diff(across_m) > same_m) + 1):
-        apart = np.concatenate([[True], np.diff(position_m[column, 2]) > same_m])  # antennas at one place count once
+        apart = np.concatenate([[True], np.diff(position_m[column, 2]) > same_m])  # coincident antennas count once
         columns.append(column[apart])
     tallest_m = max(float(np.ptp(position_m[column, 2])) for column in columns)
     if tallest_m < same_m:
@@ -82,12 +82,19 @@ def elevation_columns(position_m: AntennaPositions, wavelength_m: float) -> list
 
 
 def has_elevation(config: RadarConfig) -> bool:
-    """Whether this radar's array sees the elevation of a lone echo, by the phase between two rows."""
+    """Whether the array measures the elevation of a single target, by the phase difference of two rows."""
     return elevation_rows(config.antenna_position_m, config.wavelength_m) is not None
 
 
 def resolves_elevation(config: RadarConfig) -> bool:
-    """Whether a map over elevation shows more than an arc: columns of a wavelength, a beam of some 35 degrees."""
+    """Whether an elevation spectrum is meaningful for the array.
+
+    Args:
+        config: The radar.
+
+    Returns:
+        True if a column of three or more antennas spans at least a wavelength, a beam of about 35 degrees.
+    """
     columns = elevation_columns(config.antenna_position_m, config.wavelength_m)
     place_m = config.antenna_position_m
     near_m = (1.0 - SAME_PLACE_WAVELENGTHS) * config.wavelength_m
@@ -95,7 +102,14 @@ def resolves_elevation(config: RadarConfig) -> bool:
 
 
 def azimuth_resolution_rad(config: RadarConfig) -> float:
-    """Beam width of the azimuth row at broadside, wavelength / (aperture + one spacing); nan for a single column."""
+    """Beamwidth of the azimuth row at broadside.
+
+    Args:
+        config: The radar.
+
+    Returns:
+        Wavelength / (aperture + one spacing) in radians; nan for a single column.
+    """
     position_m = config.antenna_position_m
     x_m = position_m[azimuth_row(position_m, config.wavelength_m), 0]
     columns = len(np.unique(np.round(x_m / (SAME_PLACE_WAVELENGTHS * config.wavelength_m))))
@@ -105,7 +119,7 @@ def azimuth_resolution_rad(config: RadarConfig) -> float:
 
 
 def _rows(position_m: AntennaPositions, wavelength_m: float) -> list[PerIndex]:
-    """Antennas of equal height, lowest row first, each left to right."""
+    """Antennas of equal height, lowest row first, each from left to right."""
     same_m = SAME_PLACE_WAVELENGTHS * wavelength_m
     order = np.lexsort((position_m[:, 0], np.round(position_m[:, 2] / same_m)))
     height_m = position_m[order, 2]

@@ -1,6 +1,6 @@
-"""Data sets of procedural rooms, and labelled sets: plan, generation, storage, and `RadarDataset`, their reader.
+"""Data sets of procedural rooms and labelled sets: planning, generation, storage, and `RadarDataset`, which reads both.
 
-Read `dataset_plan` first. `RadarDataset` and `collate` are imported when first used.
+Start with `dataset_plan`. `RadarDataset` and `collate` are imported at first use.
 """
 
 from importlib import import_module
@@ -13,7 +13,7 @@ __all__ = ["RadarDataset", "collate"]
 
 
 def __getattr__(name: str) -> Any:
-    """The public names, imported at their first use."""
+    """Imports a public name at first use."""
     if name not in __all__:
         raise AttributeError(f"module 'mmweaver.datasets' has no attribute {name!r}")
     return getattr(import_module("mmweaver.datasets.radar_dataset"), name)

@@ -2,7 +2,7 @@
 
     OUT/sequences.zarr/               attributes: radar, label_names, schema_version
         iq        (sequence, frame_time, range, radial_velocity, antenna, part)  float16 or float32, times iq_scale;
-                  without it signals are made from geometry/ when asked for (`signals_on_demand`)
+                  without it signals are synthesised from geometry/ on demand (`signals_on_demand`)
         iq_scale  (sequence)   sqrt(mW)
         joints_m  (sequence, frame_time, joint, axis)   float32
         points    (point, column)   float32: x, y, z in metres, radial velocity in m/s, SNR in dB
@@ -12,9 +12,9 @@
         frame_time, range, radial_velocity   coordinates in s, m, m/s; antenna_position_m (antenna, axis)
     OUT/set.json, activities.toml, leaks.json, SHA256SUMS
 
-A data set of rooms has the same arrays in a group for each room (`dataset_store`). Signals are in shards
-and not compressed, so that the size of a sequence says nothing of its label; every chunk ends in its CRC-32C, and all
-files are checked against SHA256SUMS before they are used. Reference: docs/decisions/matched-draws.md.
+A data set of rooms has the same arrays in one group per room (`dataset_store`). Signals are stored in shards without
+compression, so that the size of a sequence carries no information on its label; every chunk ends in its CRC-32C, and
+all files are checked against SHA256SUMS before use. Reference: docs/decisions/matched-draws.md.
 """
 
 import json
@@ -53,8 +53,8 @@ NUMBERS = {
 }
 IQ_KINDS = ("float16", "float32", "none")
 MADE_BY = "mmweaver dataset"
-MOST = 2**31 - 1  # of a number that counts something
-FARTHEST_M = 1000.0  # of joints and points; what is beyond is damage
+MOST = 2**31 - 1  # largest index or count
+FARTHEST_M = 1000.0  # largest coordinate of joints and points; anything beyond indicates damage
 
 
 def write_set(
@@ -66,8 +66,17 @@ def write_set(
     signals: Iterable[np.ndarray] | SetGeometry,
     kind: str,
 ) -> None:
-    """Writes a new store into the folder: `columns` along the sequences, `arrays` as described above, `signals` packed
-    one by one by `zarr_arrays.packed_iq` to a kind of IQ_KINDS, or what they are made from on demand.
+    """Writes a new store into a folder.
+
+    Args:
+        folder: The folder.
+        config: Radar of all sequences.
+        labels: Names of the labels by number.
+        columns: One value per sequence for each of STRINGS and NUMBERS.
+        arrays: "joints_m", "points", "point_sequence", "point_frame" and "iq_scale", as in the module's table.
+        signals: Signals packed by `zarr_arrays.packed_iq`, one sequence at a time, or the geometry from which they are
+            synthesised on demand.
+        kind: Number type of the signals, one of IQ_KINDS.
     """
     group: Any = zarr_module().open_group(folder / STORE, mode="w")
     frames = arrays["joints_m"].shape[1]
@@ -105,7 +114,15 @@ def write_set(
 
 
 def bytes_of_signals(folder: Path, sequences: int) -> list[int]:
-    """How large the file is that holds the signals of each sequence of a store in the folder; empty without signals."""
+    """Size of the file that contains the signals of each sequence.
+
+    Args:
+        folder: The set.
+        sequences: Number of sequences.
+
+    Returns:
+        Bytes per sequence; empty without stored signals.
+    """
     store = open_zarr(folder / STORE)
     if "iq" not in store:
         return []
@@ -115,25 +132,35 @@ def bytes_of_signals(folder: Path, sequences: int) -> list[int]:
 
 @dataclass(frozen=True, kw_only=True)
 class ActivitySet:
-    """A stored set: everything but the signals in memory."""
+    """A stored labelled set; everything except the signals is in memory."""
 
     files: CheckedFolder
     arrays: ZarrFolder
     config: RadarConfig
     label_names: tuple[str, ...]
-    columns: dict[str, np.ndarray]  # along the sequences
+    columns: dict[str, np.ndarray]  # (sequence,) each
     joints_m: np.ndarray  # (sequence, frame, 22, 3)
     points: np.ndarray  # (point, 5)
     point_sequence: np.ndarray  # (point,)
     point_frame: np.ndarray  # (point,)
-    iq_scale: np.ndarray | None  # (sequence,); None where no signals are stored
-    on_demand: SignalsOnDemand | None  # then makes them; None in sets of mmweaver before 1.0, too
+    iq_scale: np.ndarray | None  # (sequence,); None without stored signals
+    on_demand: SignalsOnDemand | None  # synthesises signals that are not stored; None in sets before mmweaver 1.0
 
     def __len__(self) -> int:
         return len(self.columns["label"])
 
     def cube(self, index: int) -> RadarCube:
-        """The cube of one sequence in sqrt(mW), stored or made now. Raises InputError where a file is damaged."""
+        """Reads or synthesises the cube of one sequence.
+
+        Args:
+            index: Index of the sequence.
+
+        Returns:
+            Cube in sqrt(mW).
+
+        Raises:
+            InputError: If a file is damaged, or the set has no signals.
+        """
         if self.on_demand is not None:
             room, subject = (int(self.columns[name][index]) for name in ("room", "subject"))
             return self.on_demand.cube(index, room=room, subject=subject)
@@ -144,19 +171,33 @@ class ActivitySet:
         return RadarCube(values=values, grid=grid, config=self.config, scale=1.0)
 
     def cloud(self, index: int) -> PointCloud:
-        """The point cloud of one sequence."""
+        """Point cloud of one sequence.
+
+        Args:
+            index: Index of the sequence.
+
+        Returns:
+            The stored points.
+        """
         own = self.point_sequence == index
         columns = dict(zip(POINT_COLUMNS, self.points[own].T.astype(np.float64), strict=True))
         return PointCloud(frame=self.point_frame[own].astype(int), **columns)
 
 
 def is_activity_set(folder: Path) -> bool:
-    """Whether a folder holds a labelled set, complete or not."""
+    """Whether a folder contains a labelled set, complete or not."""
     return (folder / SET_FILE).is_file()
 
 
 def made_by(command: Any) -> str:
-    """The command that a set says made it, each word quoted anew; the bare command for anything else."""
+    """Command that made a set, with each word quoted again for safe pasting.
+
+    Args:
+        command: The command stored in the set.
+
+    Returns:
+        The command line; the bare command if the stored one is something else.
+    """
     try:
         words = shell_words(command)
     except ValueError:
@@ -165,7 +206,17 @@ def made_by(command: Any) -> str:
 
 
 def read_activity_set(folder: Path) -> ActivitySet:
-    """Opens a set. Raises InputError for a folder that is none, is not complete, or is damaged."""
+    """Opens a labelled set.
+
+    Args:
+        folder: The set.
+
+    Returns:
+        The set, with checksums verified.
+
+    Raises:
+        InputError: If the folder is not a labelled set, is incomplete, or damaged.
+    """
     if not is_activity_set(folder):
         raise InputError(f"{folder} holds no labelled set (no {SET_FILE}); make one: mmweaver dataset OUT --activities")
     plan = read_json(folder / SET_FILE)

@@ -1,6 +1,6 @@
-"""Makes a labelled set: matched draws, one sequence after another, then the store with its splits and leak report.
+"""Builds a labelled set: paired draws, one sequence after another, then the store with its splits and leak report.
 
-Finished sequences are kept in `parts/`, so it may be stopped at any time and started again with the same bits.
+Finished sequences are kept in `parts/`, so a run can be stopped at any time and resumed with identical results.
 """
 
 import json
@@ -60,36 +60,47 @@ from mmweaver.weaver.generation import Room
 from mmweaver.weaver.parsed_request import ParsedRequest
 
 PARTS = "parts"
-SHARES = (0.7, 0.15, 0.15)  # of the groups in train, validation and test
+SHARES = (0.7, 0.15, 0.15)  # share of groups in train, validation and test
 DEFAULT_SECONDS = 3.0
-# CPU seconds of 20 frames by method, composing included; 300 sequences of ten activities, other machines differ
+# CPU seconds per 20 frames by method, including composition; measured on 300 sequences of ten activities
 SEQUENCE_S = {"weaver": 0.12, "physics": 0.4}
-ON_DEMAND_BYTES = 75_000.0  # of 30 frames without signals
-BYTES = {"float16": 4.0, "float32": 8.0}  # of a complex value
+ON_DEMAND_BYTES = 75_000.0  # per 30 frames without signals
+BYTES = {"float16": 4.0, "float32": 8.0}  # per complex value
 
-Activities = dict[str, tuple[str, ...]]  # labels in the order of their numbers, with the sentences of each
+Activities = dict[str, tuple[str, ...]]  # sentences by label, in the order of label numbers
 
 
 def read_activities(file: Path) -> Activities:
     """Reads a TOML file of labels and parses all their sentences.
 
-    Raises InputError for a file that is none, or a sentence that is not understood.
+    Args:
+        file: The file.
+
+    Returns:
+        Sentences by label.
+
+    Raises:
+        InputError: If the file is malformed, or a sentence is not understood.
     """
     return activities_of(read_toml(file), file)
 
 
 @dataclass(frozen=True, kw_only=True)
 class SetOptions:
-    """What is asked for; a set is made anew bit for bit from these, the rooms and the radar."""
+    """Options of a set; together with rooms and radar they determine it bit for bit.
 
-    each: int = 20  # sequences a label
+    Raises:
+        InputError: If an option is out of range.
+    """
+
+    each: int = 20  # sequences per label
     seconds: float = DEFAULT_SECONDS
     subjects: int = 10
-    places: int = 12  # a room
+    places: int = 12  # per room
     split_by: str = "subject"
     seed: int = 0
-    iq: str = "float16"  # of IQ_KINDS
-    board: str = "typical"  # of all sequences; sampled by the seed
+    iq: str = "float16"  # one of IQ_KINDS
+    board: str = "typical"  # of all sequences; sampled with the seed
 
     def __post_init__(self) -> None:
         for name, most in (("each", 100_000), ("subjects", 10_000), ("places", 1000)):
@@ -104,7 +115,7 @@ class SetOptions:
 
 
 class SetBuilder:
-    """One set: `plan` says what it holds, `make` makes what is missing."""
+    """Builds one set: `plan` determines its content, `make` generates what is missing."""
 
     def __init__(
         self,
@@ -118,6 +129,21 @@ class SetBuilder:
         activities_text: str,
         given: GivenPlacing | None = None,
     ):
+        """Prepares a set; nothing is written yet.
+
+        Args:
+            out: Folder of the set.
+            activities: Sentences by label.
+            rooms: Rooms, used in turn.
+            weaver: Generator of the signals, with radar and method.
+            options: Options.
+            command: Command line, stored in set.json.
+            activities_text: Content of activities.toml.
+            given: Placement that the user fixed for all sequences. Default: sampled.
+
+        Raises:
+            InputError: If the board is unknown, or signals on demand are impossible.
+        """
         self.out, self.activities, self.rooms, self.weaver, self.options = out, activities, list(rooms), weaver, options
         self.command, self.activities_text, self.given = command, activities_text, given
         self.labels = tuple(activities)
@@ -132,7 +158,11 @@ class SetBuilder:
 
     @cached_property
     def plan(self) -> list[PlannedSequence]:
-        """All sequences in the order of the set. Raises InputError where no place serves all activities."""
+        """All sequences in the order of the set.
+
+        Raises:
+            InputError: If no place in a room serves an activity.
+        """
         options, range_m = self.options, self.weaver.radar.range_m
         window_m = float(range_m[0]), float(range_m[-1])
         places = [places_of(room.scene, window_m, options.places, options.seed) for room in self.rooms]
@@ -148,7 +178,7 @@ class SetBuilder:
         return PlannedSequence(draw=draw, label=label, sentence=sentence, text=sentences[sentence])
 
     def _obstacle(self, draw: Draw, label: int) -> str:
-        """Why a draw does not serve a label; "" where it does."""
+        """Why a draw does not serve a label; "" if it does."""
         one = self._sequence(self._placed(draw), label)
         return obstacle_of(self.request_of(one), self.rooms[draw.room].scene, one.text)
 
@@ -156,7 +186,14 @@ class SetBuilder:
         return draw if self.given is None else self.given.applied(draw)
 
     def request_of(self, one: PlannedSequence) -> ParsedRequest:
-        """The request of one sequence."""
+        """Builds the request that generates one sequence.
+
+        Args:
+            one: The planned sequence.
+
+        Returns:
+            The request, with place, heading, person and seed of its draw.
+        """
         draw = one.draw
         height_m = None if self.given is None else self.given.height_m
         request = self.weaver.request(
@@ -173,25 +210,36 @@ class SetBuilder:
 
     @cached_property
     def ignored_descriptions(self) -> list[str]:
-        """What sentences say of their person, where they do not all say the same: drawn people do all activities."""
+        """Differing descriptions of people in the sentences; they are ignored, since each subject does everything."""
         texts = [text for sentences in self.activities.values() for text in sentences]
         return differing_descriptions(self.weaver.request(text, seconds=self.options.seconds) for text in texts)
 
     # making ----------------------------------------------------------------------------------------------------------
     @property
     def is_made(self) -> bool:
-        """Whether the store is there, so that nothing is missing."""
+        """Whether the set is complete."""
         return (self.out / STORE).is_dir()
 
     @property
     def finished(self) -> int:
-        """How many sequences are there already."""
+        """Number of finished sequences."""
         if self.is_made:
             return len(self.plan)
         return len(list((self.out / PARTS).glob("[0-9]*.npz")))
 
     def make(self, listener: Callable[[int, int], object] | None = None) -> dict[str, Any]:
-        """Makes what is missing and returns the leak report with the number of sequences. Raises InputError."""
+        """Generates what is missing.
+
+        Args:
+            listener: Called with the number of finished and of all sequences. Default: none.
+
+        Returns:
+            The leak report.
+
+        Raises:
+            InputError: If the folder contains something else or a set with other settings, or no place serves an
+                activity.
+        """
         self._begin()
         if not self.is_made:
             for number, one in enumerate(self.plan):
@@ -204,14 +252,18 @@ class SetBuilder:
         return read_json(self.out / LEAKS_FILE)
 
     def check_folder(self) -> None:
-        """Raises InputError for a folder that holds something else; takes no time, unlike the plan."""
+        """Checks that the folder is usable; fast, unlike the plan.
+
+        Raises:
+            InputError: If it contains something else, or zarr is not installed.
+        """
         need("dataset", "a labelled set", "zarr")
         check_output_folder(self.out, overwrite=True, files=[SET_FILE, LEAKS_FILE])
         if self.out.is_dir() and not is_empty(self.out) and not (self.out / SET_FILE).is_file():
             raise InputError(f"{self.out} is not empty and holds no labelled set; choose another folder")
 
     def _begin(self) -> None:
-        """Writes what the set is made of. Raises InputError, before anything is written, where no place serves."""
+        """Writes set.json. Raises InputError before anything is written if no place serves an activity."""
         self.check_folder()
         if not (self.out / SET_FILE).is_file():
             _ = self.plan
@@ -263,7 +315,11 @@ class SetBuilder:
             write_npz(temporary, **arrays)
 
     def cost(self) -> DatasetCost:
-        """Estimated cost of the sequences that are missing. Raises InputError where no place serves an activity."""
+        """Estimates the cost of the missing sequences.
+
+        Raises:
+            InputError: If no place serves an activity.
+        """
         missing, request = len(self.plan) - self.finished, self.request_of(self.plan[0])
         config, frames = request.config, request.frames
         values = frames * config.num_range_bins * config.num_loops * config.num_antennas
@@ -325,11 +381,11 @@ class SetBuilder:
             shutil.copyfile(self.out / SET_FILE, stage / SET_FILE)
 
     def _part_arrays(self, name: str) -> Iterator[np.ndarray]:
-        """An array of each part, one in memory at a time."""
+        """Yields an array of each part, one at a time."""
         return (np.asarray(read_npz(self._part_file(number))[name]) for number in range(len(self.plan)))
 
     def _geometry(self, heights: list[float]) -> SetGeometry:
-        """What signals are made from on demand."""
+        """Geometry from which signals are synthesised on demand."""
         return SetGeometry(
             method=self.weaver.method_name,
             board=self.weaver.board_of(self.request_of(self.plan[0]), self.rooms[0])[0],
@@ -351,7 +407,7 @@ class SetBuilder:
 
     @cached_property
     def splits(self) -> dict[str, list[str]]:
-        """The split of each sequence, in a column for each of SPLIT_KEYS."""
+        """Split of each sequence, in one column for each of SPLIT_KEYS."""
         plan = self.plan
         return split_columns(
             self.options.seed,
@@ -375,11 +431,11 @@ def write_labelled(
 
     Args:
         stage: The folder.
-        config: The radar of all sequences.
-        labels: Words of the labels, by number.
-        columns: Along the sequences, without "label_name".
+        config: Radar of all sequences.
+        labels: Names of the labels by number.
+        columns: One value per sequence, without "label_name".
         arrays: "joints_m", "points", "point_frame" and "iq_scale" of each sequence.
-        signals: As `activity_store.write_set` takes them.
+        signals: As in `activity_store.write_set`.
         kind: One of IQ_KINDS.
     """
     counts = [len(points) for points in arrays["points"]]
@@ -401,27 +457,52 @@ def write_leaks(
     labels: Sequence[str],
     reasons: dict[str, str] | None = None,
 ) -> dict[str, Any]:
-    """Writes leaks.json of these circumstances, and returns the report."""
+    """Writes leaks.json.
+
+    Args:
+        stage: The folder.
+        found: Circumstances by name, (sequence, column).
+        columns: "label" and "draw" of each sequence.
+        labels: Names of the labels by number.
+        reasons: Why a circumstance cannot be equal for all labels. Default: none.
+
+    Returns:
+        The report.
+    """
     report = leak_report(found, np.asarray(columns["label"]), np.asarray(columns["draw"]), labels, reasons)
     (stage / LEAKS_FILE).write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
     return report
 
 
 def _comparable(text: str) -> Any:
-    """What a set follows from: words such as --quiet may differ when it is resumed."""
+    """Content that determines a set; the command may differ in words such as --quiet when resumed."""
     found = parse_json(text, SET_FILE)
     return found | {"command": ""} if isinstance(found, dict) else found
 
 
 def split_columns(seed: int, **groups: Sequence[Any]) -> dict[str, list[str]]:
-    """The columns split_subject, split_place, split_room and split_sentence, from the groups of each sequence."""
+    """Builds the columns split_subject, split_place, split_room and split_sentence.
+
+    Args:
+        seed: Seed of the splits.
+        **groups: Group of each sequence, for each of SPLIT_KEYS.
+
+    Returns:
+        Split of each sequence, by column.
+    """
     return {f"split_{key}": split_of(groups[key], key, seed) for key in SPLIT_KEYS}
 
 
 def split_of(groups: Sequence[Any], key: str, seed: int) -> list[str]:
-    """The split of each sequence: whole groups go to train, validation or test in about the shares of SHARES.
+    """Splits sequences by groups: entire groups go to train, validation or test in about the shares of SHARES.
 
-    With fewer than three groups all are for training: nothing can be held out.
+    Args:
+        groups: Group of each sequence.
+        key: Purpose of the split, which selects the random stream.
+        seed: Seed of the splits.
+
+    Returns:
+        Split of each sequence; all "train" for fewer than three groups.
     """
     unique = sorted(set(groups))
     if len(unique) < len(SPLITS):

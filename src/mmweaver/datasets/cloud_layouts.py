@@ -1,4 +1,4 @@
-"""Point clouds as public data sets store them: RadHAR's text, MARS's tables with Kinect joints."""
+"""Point clouds in the layouts of public data sets: RadHAR's text, MARS's tables with Kinect joints."""
 
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from mmweaver.core.skeleton import joint
 from mmweaver.datasets.formats import export_format
 from mmweaver.io.stored_result import StoredResult
 
-START_S = 1_500_000_000  # of the stamps: a result has no date
+START_S = 1_500_000_000  # start of the time stamps, since a result has no date
 KINECT_JOINTS = {
     "SpineBase": "pelvis",
     "SpineMid": "spine2",
@@ -43,10 +43,10 @@ KINECT_JOINTS = {
 
 @export_format("radhar", "RadHAR's text of points")
 def write_radhar(result: StoredResult, out: Path) -> str:
-    """`radhar.txt`: one block per point, as ROS prints the messages of ti_mmwave_rospkg.
+    """Writes `radhar.txt`: one block per point, as ROS prints the messages of ti_mmwave_rospkg.
 
     x is ahead, y to the left, z up, in metres; velocity in m/s; bearing in degrees, positive to the left; intensity is
-    the signal-to-noise ratio in dB.
+    the SNR in dB.
 
     Reference: Singh et al., RadHAR (mmNets 2019), as of its public data.
     """
@@ -82,12 +82,15 @@ def write_radhar(result: StoredResult, out: Path) -> str:
 
 @export_format("mars", "MARS's tables of points and joints")
 def write_mars(result: StoredResult, out: Path) -> str:
-    """`radar_data.csv` and `kinect_data.csv` as in MARS: one row per point, and one row of 25 joints per frame.
+    """Writes `radar_data.csv`, one row per point, and `kinect_data.csv`, one row of 25 joints per frame, as in MARS.
 
     Metres from the radar: X to the right, Y ahead, Z up; velocity in m/s; intensity is the SNR in dB. Hands, hand tips
-    and thumbs, which the skeleton lacks, are the wrists. Raises InputError where there is no person, or several.
+    and thumbs, which the skeleton lacks, are placed at the wrists.
 
     Reference: An and Ogras, MARS (ACM TECS 2021), as of its public data.
+
+    Raises:
+        InputError: If the result does not have exactly one person.
     """
     if len(result.poses) != 1:
         raise InputError(f"MARS has one person with joints, this result has {len(result.poses)}")
@@ -111,5 +114,5 @@ def write_mars(result: StoredResult, out: Path) -> str:
 
 
 def kinect_joints_m(joints_m: Float[Array, "frame 22 3"]) -> Float[Array, "frame 25 3"]:
-    """The Kinect's 25 joints in its order."""
+    """The Kinect's 25 joints in its order, (frame, 25, 3)."""
     return joints_m[:, [joint(name) for name in KINECT_JOINTS.values()]]

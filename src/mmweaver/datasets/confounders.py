@@ -1,9 +1,9 @@
 """Confounders: how well the label is predicted without the radar signal; leaks.json.
 
-One-nearest-neighbour classifiers see one circumstance each (start place, person, duration ...) and are tested on people
-that they have not seen, over all labels and on each. With matched draws they are at chance. What cannot be equal
-between activities, such as energy, posture or where a walk ends, is reported separately: it is part of what the radar
-sees.
+One-nearest-neighbour classifiers see one circumstance each (start place, person, duration ...) and are tested on unseen
+people, over all labels and on each label. With paired draws they are at chance. Circumstances that necessarily differ
+between activities, such as energy, posture or the end of a walk, are reported separately: they are part of what the
+radar sees.
 """
 
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ from mmweaver.core.shapes import Array
 from mmweaver.core.skeleton import joint
 
 Z_99 = 2.576
-Z_LABELS = 4.2  # 99 % over some hundred comparisons: every circumstance with every label
+Z_LABELS = 4.2  # 99 % over about a hundred comparisons: every circumstance with every label
 INHERENT = {
     "start_posture": "a sequence shows the activity from its first frame on, so its first posture is part of it",
     "end_place": "where a person ends is part of what is done: a walk leads elsewhere",
@@ -34,11 +34,11 @@ class Leak:
     high: float
     chance: float
     number: int
-    of_labels: dict[int, float]  # accuracy on the labels, by their number, that are above chance on their own
+    of_labels: dict[int, float]  # accuracy on single labels above chance, by label number
 
     @property
     def leaks(self) -> bool:
-        """Whether the accuracy, or that on one label, is above chance beyond the interval."""
+        """Whether the accuracy, overall or on one label, is significantly above chance."""
         return self.low > self.chance or bool(self.of_labels)
 
 
@@ -49,11 +49,18 @@ def leak_report(
     label_names: Sequence[str],
     reasons: dict[str, str] | None = None,
 ) -> dict[str, Any]:
-    """The report as JSON types: each circumstance with its accuracy, interval and chance, and a verdict.
+    """Tests every circumstance as a predictor of the label.
 
-    `group`: the person (or draw) of each sequence; a classifier is never tested on a group that it has seen. "labels"
-    are those that a circumstance predicts on their own: more often right, beyond the intervals, than by chance and than
-    others are mistaken for them. `reasons`: why a circumstance cannot be equal for all labels, besides `INHERENT`.
+    Args:
+        circumstances: Circumstances by name, (sequence, column).
+        label: Label number of each sequence.
+        group: Person (or draw) of each sequence; classifiers are tested on unseen groups only.
+        label_names: Names of the labels by number.
+        reasons: Why a circumstance cannot be equal for all labels, in addition to `INHERENT`. Default: none.
+
+    Returns:
+        JSON types: a verdict, and for each circumstance accuracy, interval, chance, and the labels it predicts on their
+        own, i.e. significantly more often right than by chance and than others are mistaken for them.
     """
     found = {name: _score(values, label, group) for name, values in circumstances.items()}
     avoidable = [name for name, leak in found.items() if leak.leaks and name not in INHERENT]
@@ -86,14 +93,23 @@ def leak_report(
 
 
 def verdict_of(report: dict[str, Any]) -> str:
-    """The verdict with what belongs to the activities, for people."""
+    """Verdict of a report, with the circumstances that are part of the activities."""
     return "; ".join(filter(None, (report["verdict"], report["inherent"])))
 
 
 def circumstances(
     joints_m: Sequence[Float[Array, "frame 22 3"]], label: Int[Array, " sequence"], **more: Sequence[Any]
 ) -> dict[str, Float[Array, "sequence column"]]:
-    """What is known of sequences from their joints and their place in the set; `more`: further rows by name."""
+    """Collects the circumstances of sequences that are known without the signal.
+
+    Args:
+        joints_m: Joints in metres of each sequence, (frame, 22, 3).
+        label: Label number of each sequence.
+        **more: Further circumstances, one value or row per sequence.
+
+    Returns:
+        Circumstances by name, (sequence, column).
+    """
     first_m, order = np.stack([one[0] for one in joints_m]), np.arange(len(joints_m))
     facing = np.stack([_facing(one) for one in first_m])
     body = first_m - first_m[:, :1]
@@ -114,7 +130,7 @@ def circumstances(
 
 
 def _facing(joints_m: Float[Array, "22 3"]) -> Float[Array, "2"]:
-    """The direction from the left to the right hip."""
+    """Direction from the left to the right hip."""
     across = joints_m[joint("right_hip"), :2] - joints_m[joint("left_hip"), :2]
     return across / max(float(np.linalg.norm(across)), 1e-9)
 
@@ -134,7 +150,7 @@ def _score(values: Float[Array, "sequence column"], label: Array, group: Array) 
     low, high = _wilson(accuracy, number)
     alone = {}
     for one, answer, own in zip(labels.tolist(), answered.T, is_own.T, strict=True):
-        # a label that is answered as often where it is wrong is not recognised
+        # a label predicted equally often for other labels is not recognised
         if own.all():
             continue
         recall, others = float(answer[own].mean()), float(answer[~own].mean())
@@ -144,14 +160,14 @@ def _score(values: Float[Array, "sequence column"], label: Array, group: Array) 
 
 
 def _answers(train: Array, train_label: Array, test: Array, labels: Array) -> Float[Array, "sequence label"]:
-    """How often the nearest neighbour gives each label; equally near ones are asked in equal parts."""
+    """Votes of the nearest neighbour for each label; ties are shared equally."""
     distance = np.linalg.norm(test[:, None] - train[None], axis=-1)
     nearest: Bool[Array, "test train"] = distance <= distance.min(axis=1, keepdims=True) + 1e-12
     return (nearest @ (train_label[:, None] == labels).astype(float)) / nearest.sum(axis=1, keepdims=True)
 
 
 def _wilson(share: float, number: int, z: float = Z_99) -> tuple[float, float]:
-    """Wilson's score interval."""
+    """Wilson score interval."""
     z2 = z**2
     centre = (share + z2 / (2 * number)) / (1 + z2 / number)
     half = z / (1 + z2 / number) * np.sqrt(share * (1 - share) / number + z2 / (4 * number**2))

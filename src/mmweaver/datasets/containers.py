@@ -14,12 +14,12 @@ from mmweaver.io.conversions import to_dataset
 from mmweaver.io.npz_files import POINT_COLUMNS
 from mmweaver.io.stored_result import StoredResult
 
-MAX_NETCDF_BYTES = 2_000_000_000  # of a variable of netCDF 3
+MAX_NETCDF_BYTES = 2_000_000_000  # per variable of netCDF 3
 
 
 @export_format("mat", "MATLAB", ending=".mat")
 def write_mat(result: StoredResult, out: Path) -> str:
-    """`result.mat` (MATLAB 5): the cube (frame, range, doppler, antenna) complex single, its axes, points and joints.
+    """Writes `result.mat` (MATLAB 5): cube (frame, range, doppler, antenna) as complex single, axes, points and joints.
 
     `points` (point, 6): frame from 1, x, y, z in metres, velocity in m/s, SNR in dB; `joints_m` (person, frame, 22, 3).
     """
@@ -47,10 +47,13 @@ def write_mat(result: StoredResult, out: Path) -> str:
 
 @export_format("netcdf", "netCDF 3, for xarray", ending=".nc")
 def write_netcdf(result: StoredResult, out: Path) -> str:
-    """`result.nc` (netCDF 3): `cube_real` and `cube_imag`, for netCDF has no complex numbers, points and joints.
+    """Writes `result.nc` (netCDF 3) with points and joints.
 
-    Dimensions and coordinates have one name each, so that xarray's `.sel(range=2.0)` works. Raises InputError where
-    xarray is not installed, or the cube is too large for the format.
+    The cube is split into `cube_real` and `cube_imag`, since netCDF lacks complex numbers. Dimensions and coordinates
+    share their names, so that xarray's `.sel(range=2.0)` works.
+
+    Raises:
+        InputError: If xarray is not installed, or the cube is too large for the format.
     """
     need("export", "netCDF", "xarray")
     import xarray
@@ -73,7 +76,7 @@ def write_netcdf(result: StoredResult, out: Path) -> str:
         "range": ("range", grid.range_m, {"units": "m"}),
         "radial_velocity": ("radial_velocity", grid.radial_velocity_mps, {"units": "m/s"}),
     }
-    # a time in seconds since the start is a number, not a date
+    # time in seconds since the start is a number, not a date
     dataset = xarray.Dataset(variables, coordinates, {"text": result.text, "wavelength_m": grid.wavelength_m})
     dataset.to_netcdf(out / "result.nc", engine="scipy", format="NETCDF3_64BIT")
     return "a netCDF file"
@@ -81,10 +84,12 @@ def write_netcdf(result: StoredResult, out: Path) -> str:
 
 @export_format("zarr", "Zarr 3, for xarray")
 def write_zarr(result: StoredResult, out: Path) -> str:
-    """`result.zarr` (Zarr 3): the dataset of `Generation.to_xarray`, complex cube included, for `xarray.open_zarr`.
+    """Writes `result.zarr` (Zarr 3): the dataset of `Generation.to_xarray` with complex cube, for `xarray.open_zarr`.
 
-    The names of joints and axes are attributes, since Zarr 3 has no settled type for texts of fixed length.
-    Raises InputError where xarray or zarr is not installed.
+    Names of joints and axes are attributes, since Zarr 3 has no stable type for fixed-length texts.
+
+    Raises:
+        InputError: If xarray or zarr is not installed.
     """
     need("export", "a Zarr store", "xarray", "zarr")
     dataset = to_dataset(result.cube, result.points, result.poses, None, result.meta)

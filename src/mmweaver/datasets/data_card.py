@@ -1,7 +1,7 @@
 """Data cards: README.md of a generated set, with the front matter that the Hugging Face Hub reads.
 
-Written once a set is complete, from the metadata of the arrays that lie there. It is in no list of checksums, so that
-whoever publishes a set may complete it; one that is there is kept.
+Written once a set is complete, from the metadata of its arrays. The card is not covered by checksums, so that the
+publisher of a set may edit it; an existing card is kept.
 """
 
 import json
@@ -73,12 +73,15 @@ transmission through furniture are missing. {more}Not for decisions about people
 
 
 def write_rooms_card(folder: Path, rooms: Sequence[str], axes: Iterable[str]) -> None:
-    """Writes the card of a complete data set of rooms, unless there is one. Raises InputError where it is damaged.
+    """Writes the card of a complete data set of rooms unless it exists.
 
     Args:
         folder: The data set.
-        rooms: Names of the folders of its rooms.
-        axes: Names of the arrays that lie in its root.
+        rooms: Folder names of its rooms.
+        axes: Names of the arrays in its root.
+
+    Raises:
+        InputError: If metadata is damaged.
     """
     if (folder / CARD_FILE).exists():
         return
@@ -106,7 +109,14 @@ def write_rooms_card(folder: Path, rooms: Sequence[str], axes: Iterable[str]) ->
 
 
 def write_set_card(folder: Path) -> None:
-    """Writes the card of a complete labelled set, unless there is one. Raises InputError where it is damaged."""
+    """Writes the card of a complete labelled set unless it exists.
+
+    Args:
+        folder: The set.
+
+    Raises:
+        InputError: If metadata is damaged.
+    """
     if (folder / CARD_FILE).exists():
         return
     about = read_json(folder / SET_FILE)
@@ -149,13 +159,13 @@ def _write(
 
 
 def _cell(value: Any) -> str:
-    """A value as a cell of a table: words of a file can be no markup and no cell of their own."""
+    """Escapes a value for a table cell, so that text from files can be neither markup nor a cell of its own."""
     text = " ".join(str(value).split())
     return "".join(f"\\{one}" if one in "|<>[]*\\" else one for one in text)
 
 
 def _arrays(folder: Path, names: Iterable[str]) -> Iterator[tuple[str, ...]]:
-    """Name, dimensions, shape, type and unit of the arrays that lie in, or are, these entries of a Zarr group."""
+    """Name, dimensions, shape, dtype and unit of the arrays in, or at, these entries of a Zarr group."""
     for name in names:
         for file in sorted((folder / name).rglob(METADATA)):
             about = read_json(file)

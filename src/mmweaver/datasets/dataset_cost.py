@@ -1,4 +1,4 @@
-"""Estimated cost of a data set before it is generated: CPU time and disk space."""
+"""Estimated cost of a data set before generation: CPU time and disk space."""
 
 import shutil
 from collections import Counter
@@ -15,13 +15,13 @@ BENCHMARK_FRAMES = 20
 SEQUENCE_S = {False: 0.37, True: 0.09}  # CPU seconds; with signals, with geometry only
 ROOM_S = {False: 1.2, True: 1.6}
 ROOM_BYTES = {False: 1.02e6, True: 1.32e6}
-GEOMETRY_BYTES = 21_700.0  # of a sequence without its signal
-SIGNAL_SHARE = 1.02  # of the float16 bytes of a signal: clutter and noise leave nothing to compress, joints come on top
+GEOMETRY_BYTES = 21_700.0  # per sequence without signal
+SIGNAL_SHARE = 1.02  # stored bytes / float16 bytes of a signal: not compressible, plus joints
 
 
 @dataclass(frozen=True, kw_only=True)
 class DatasetCost:
-    """Cost of the missing rooms; `splits` counts the sequences of the whole plan."""
+    """Cost of the missing rooms; `splits` counts the sequences of the entire plan."""
 
     rooms: int
     sequences: int
@@ -30,7 +30,14 @@ class DatasetCost:
     splits: dict[str, int]
 
     def summary(self, workers: int) -> str:
-        """One line of text."""
+        """Formats the cost in one line.
+
+        Args:
+            workers: Number of parallel processes.
+
+        Returns:
+            Text with CPU time, wall time and disk space.
+        """
         splits = ", ".join(f"{name} {count:,}" for name, count in self.splits.items())
         wall = _time(self.core_s / max(workers, 1))
         return (
@@ -41,7 +48,16 @@ class DatasetCost:
 
 
 def estimate_cost(plan: DatasetPlan, config: RadarConfig, folder: Path) -> DatasetCost:
-    """Cost of the rooms of a plan that are missing in a folder; an upper bound, for some motions find no place."""
+    """Estimates the cost of the rooms that are missing; an upper bound, since some motions fit nowhere.
+
+    Args:
+        plan: The plan.
+        config: The radar.
+        folder: The data set.
+
+    Returns:
+        The cost.
+    """
     rooms = plan.rooms()
     missing = [room for room in rooms if not is_done(folder, room.name)]
     count = sum(len(room.sequences) for room in missing)
@@ -59,7 +75,15 @@ def estimate_cost(plan: DatasetPlan, config: RadarConfig, folder: Path) -> Datas
 
 
 def check_for_space(cost: DatasetCost, folder: Path) -> None:
-    """Raises InputError where the disk has too little free space."""
+    """Checks the free disk space.
+
+    Args:
+        cost: Estimated cost.
+        folder: Where the data set will be written.
+
+    Raises:
+        InputError: If it is insufficient.
+    """
     there = next(path for path in (folder.absolute(), *folder.absolute().parents) if path.exists())
     free = float(shutil.disk_usage(there).free)
     if cost.disk_bytes > free:

@@ -15,9 +15,9 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
 
-PLAN_VERSION = 3  # 2: signals of first order, one reflection coefficient a wall, no clutter
-RADAR_FILE = "radar.json"  # the radar with its range window, in the root of a data set
-# The activities of the paper and three more, each phrased in several ways.
+PLAN_VERSION = 3  # 2: first-order paths, one reflection coefficient per wall, no clutter
+RADAR_FILE = "radar.json"  # radar with range window, in the root of a data set
+# Activities of the paper and three more, each phrased in several ways.
 ACTIVITIES: dict[str, tuple[str, ...]] = {
     "walking": (
         "a person walks towards the radar",
@@ -47,13 +47,13 @@ PEOPLE_HEIGHT_M = (1.63, 1.70, 1.75, 1.80, 1.87, 1.96)
 SPLITS = ("train", "validation", "test_room", "test_layout", "test_person", "test_activity")
 
 
-_KIND = re.compile(r"\w[\w -]{0,99}")  # of room: part of the name of a folder
-MOST = 100_000  # of layouts, sequences of a room, and frames
+_KIND = re.compile(r"\w[\w -]{0,99}")  # kind of room, part of a folder name
+MOST = 100_000  # limit of layouts, sequences per room, and frames
 
 
 @dataclass(frozen=True, kw_only=True)
 class HeldOut:
-    """What is held out from training."""
+    """Properties held out from training."""
 
     validation_kinds: tuple[str, ...] = ("dining_room",)
     test_kinds: tuple[str, ...] = ("living_room", "classroom", "workshop")
@@ -62,9 +62,16 @@ class HeldOut:
     test_layouts: int = 2  # the last ones of each kind
 
     def split(self, *, kind: str, layouts_after: int, person: int, activity: str) -> str:
-        """The split of a sequence, or "" if it combines two held-out properties and is not generated.
+        """Assigns a sequence to a split.
 
-        `layouts_after`: number of layouts of this kind of room that come after its own.
+        Args:
+            kind: Kind of room.
+            layouts_after: Number of later layouts of this kind.
+            person: Index of the person.
+            activity: Name of the activity.
+
+        Returns:
+            The split; "" if it combines two held-out properties and is not generated.
 
         >>> HeldOut().split(kind="office", layouts_after=9, person=0, activity="walking")
         'train'
@@ -109,12 +116,17 @@ class RoomSpec:
 
     @property
     def name(self) -> str:
+        """Name of the room's folder."""
         return room_name(self.kind, self.layout)
 
 
 @dataclass(frozen=True, kw_only=True)
 class DatasetPlan:
-    """A whole data set. The same plan gives the same bits, however the work is distributed."""
+    """Plan of an entire data set. Equal plans give identical data, however the work is distributed.
+
+    Raises:
+        InputError: If a value is out of range, or options contradict each other.
+    """
 
     kinds: tuple[str, ...]
     lightings: tuple[str, ...]
@@ -125,7 +137,7 @@ class DatasetPlan:
     seed: int = 0
     withheld: HeldOut = field(default_factory=HeldOut)
     geometry_only: bool = False  # signals are synthesised during training from stored geometry
-    board: str = "ideal"  # "typical": each room's signals are of another board
+    board: str = "ideal"  # "typical": a different board per room
 
     def __post_init__(self) -> None:
         for name in ("num_layouts", "sequences_a_room", "num_frames"):
@@ -141,7 +153,18 @@ class DatasetPlan:
         return [self._room(kind, layout) for kind in self.kinds for layout in range(self.num_layouts)]
 
     def board_of(self, room: RoomSpec, config: RadarConfig) -> Board:
-        """The board whose errors a room's signals have. Raises InputError."""
+        """Board whose hardware errors a room's signals have.
+
+        Args:
+            room: The room.
+            config: The radar.
+
+        Returns:
+            The board, sampled per room for "typical".
+
+        Raises:
+            InputError: If the board is unknown or does not fit the radar.
+        """
         number = int(stream(self.seed, "dataset board", room.kind, room.layout).integers(2**31))
         return find_board(self.board, config, number)
 
@@ -174,11 +197,12 @@ class DatasetPlan:
         )
 
     def _layouts_after(self, layout: int) -> int:
-        """Layouts after this one; with fewer than six layouts per kind, at most a third is held out."""
+        """Number of later layouts; with fewer than six layouts per kind, at most a third is held out."""
         spared = max(self.withheld.test_layouts - self.num_layouts // 3, 0)
         return self.num_layouts - 1 - layout + spared
 
     def to_json(self) -> str:
+        """Serialises the plan; options unknown to older versions are written only if they are used."""
         values = {"plan_version": PLAN_VERSION, **asdict(self)}
         if not self.geometry_only:  # older data sets do not have it
             del values["geometry_only"]
@@ -188,7 +212,15 @@ class DatasetPlan:
 
 
 def command_of(plan: dict[str, Any], folder: Path) -> str:
-    """The command line that makes, or repairs, the data set of a plan.json."""
+    """Command line that generates, or repairs, the data set of a plan.
+
+    Args:
+        plan: Content of plan.json.
+        folder: The data set.
+
+    Returns:
+        The command, each argument quoted.
+    """
     own = folder / RADAR_FILE
     radar = str(own) if own.is_file() else plan["radar"]
     words = [
@@ -206,7 +238,18 @@ def command_of(plan: dict[str, Any], folder: Path) -> str:
 
 
 def check_plan(plan: Any, place: Path) -> dict[str, Any]:
-    """The content of a plan.json, if rooms can be listed from it. Raises InputError otherwise; `place` names it."""
+    """Checks the content of a plan.json.
+
+    Args:
+        plan: Decoded JSON.
+        place: The file, for error messages.
+
+    Returns:
+        The plan, from which rooms can be listed.
+
+    Raises:
+        InputError: If it is damaged.
+    """
     names = ("num_layouts", "sequences_a_room", "num_frames")
     is_plan = isinstance(plan, dict) and isinstance(plan.get("radar"), str) and type(plan.get("seed")) is int
     if not is_plan or not all(type(plan.get(name)) is int and 1 <= plan[name] <= MOST for name in names):
@@ -218,13 +261,20 @@ def check_plan(plan: Any, place: Path) -> dict[str, Any]:
 
 
 def shell_words(command: Any) -> str:
-    """A command line that a file holds, each word quoted anew: whoever pastes it into a shell runs that command alone.
+    """Quotes each word of a stored command line again, so that pasting it into a shell runs that command only.
 
-    Raises ValueError for what is no command line.
+    Args:
+        command: The stored command line.
+
+    Returns:
+        The quoted command line.
+
+    Raises:
+        ValueError: If it is not a command line.
     """
     return shlex.join(shlex.split(" ".join(str(command).split())))
 
 
 def room_name(kind: str, layout: int) -> str:
-    """The name of a room's folder."""
+    """Name of a room's folder."""
     return f"{kind.replace(' ', '_')}_{layout:03d}"

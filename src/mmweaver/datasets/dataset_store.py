@@ -1,18 +1,18 @@
-"""A data set on disk: one Zarr group a room, readable with plain zarr or xarray, axes and units inside.
+"""A data set on disk: one Zarr group per room, readable with plain zarr or xarray, including axes and units.
 
     OUT/                       root group: plan.json, radar.json, axes
-    OUT/office_003/            one group a room
+    OUT/office_003/            one group per room
         iq          (sequence, frame, range, doppler, antenna, part)  float16; times iq_scale: sqrt(mW)
         iq_scale    (sequence,)
         joints_m, joint_velocity_mps   (sequence, frame, joint, axis)
         subject, seed, label, label_name, text, split    (sequence,)
         photo_rgb, photo_depth_m, photo_class  (row, column[, colour])
         empty_iq    (range, antenna, part)  static clutter of the room
-        SHA256SUMS  of all files of the room; the root has one too, of its own files
+        SHA256SUMS  of all files of the room; the root has one of its own files
         geometry/   instead of iq: stored geometry from which signals are synthesised (`geometry_store`)
 
-Every chunk ends in its CRC-32C, and every file is checked before it is used: photo, joints and all else of a room when
-it is opened, signals and geometry when they are first read. Written by `dataset_writer`. Reference: Zarr v3, xarray's
+Every chunk ends in its CRC-32C, and every file is checked before use: signals and geometry when they are first read,
+all other files of a room when it is opened. Written by `dataset_writer`. Reference: Zarr v3, xarray's
 `_ARRAY_DIMENSIONS`.
 """
 
@@ -36,11 +36,11 @@ from mmweaver.datasets.geometry_store import GEOMETRY, StoredGeometry
 from mmweaver.datasets.zarr_arrays import stored_photo
 
 PLAN_FILE = "plan.json"
-FARTHEST_M, FASTEST_MPS = 1000.0, 1000.0  # of joints and depths; what is beyond is damage
+FARTHEST_M, FASTEST_MPS = 1000.0, 1000.0  # limits of joints and depths; anything beyond indicates damage
 
 
 def is_done(folder: Path, name: str) -> bool:
-    """Whether a room has been written completely: it gets its name when it is."""
+    """Whether a room is complete; it is renamed into place only then."""
     room = folder / name
     return room.is_dir() and any(room.iterdir())
 
@@ -63,18 +63,27 @@ class StoredRoom:
     split: tuple[str, ...]
     seed: np.ndarray  # (sequence,)
     config: RadarConfig
-    geometry: StoredGeometry | None = None  # of a data set without signals
-    device: str = "cpu"  # where signals are synthesised from geometry
+    geometry: StoredGeometry | None = None  # for data sets without signals
+    device: str = "cpu"  # device on which signals are synthesised from geometry
 
     @property
     def folder(self) -> Path:
-        """The folder of the room."""
+        """Folder of the room."""
         return self.files.folder
 
     def cube(self, index: int, frames: np.ndarray | None = None, *, realization: int = 0) -> RadarCube:
-        """The cube of one sequence, or some of its frames, in sqrt(mW).
+        """Reads or synthesises the cube of one sequence.
 
-        Signals that are not stored are synthesised; another `realization` has other surface micro-phases and noise.
+        Args:
+            index: Index of the sequence.
+            frames: Indices of frames. Default: all.
+            realization: Realization of speckle and noise, if signals are synthesised. Default: 0.
+
+        Returns:
+            Cube in sqrt(mW).
+
+        Raises:
+            InputError: If a file is damaged.
         """
         if self.geometry is not None:
             wanted = np.arange(len(self.joints_m[index])) if frames is None else frames
@@ -85,7 +94,15 @@ class StoredRoom:
         return RadarCube(values=values, grid=CubeGrid.of(self.config, len(values)), config=self.config, scale=1.0)
 
     def body_paths(self, index: int, frames: np.ndarray) -> Any:
-        """The person's paths (`propagation.body_paths.BodyPaths`) in frames of one sequence, of a set with geometry."""
+        """Propagation paths of the person, for data sets with geometry.
+
+        Args:
+            index: Index of the sequence.
+            frames: Indices of frames.
+
+        Returns:
+            The paths, `propagation.body_paths.BodyPaths`.
+        """
         assert self.geometry is not None, "signals are stored, not geometry"
         return self.geometry.resynthesis("cpu").person(self._traced_motion(index), frames)
 
@@ -110,9 +127,17 @@ class StoredRoom:
 
 
 def read_rooms(folder: Path, *, device: str = "cpu") -> list[StoredRoom]:
-    """All rooms of a data set that hold sequences; signals that are not stored are synthesised on `device`.
+    """Reads all rooms of a data set that contain sequences.
 
-    Raises InputError where the folder is not a data set, where rooms are missing, and where files are damaged.
+    Args:
+        folder: The data set.
+        device: Device on which signals that are not stored are synthesised. Default: CPU.
+
+    Returns:
+        The rooms, sorted by name.
+
+    Raises:
+        InputError: If the folder is not a data set, rooms are missing, or files are damaged.
     """
     plan = read_plan(folder)
     names = sorted(room_name(kind, layout) for kind in plan["kinds"] for layout in range(plan["num_layouts"]))
@@ -127,7 +152,17 @@ def read_rooms(folder: Path, *, device: str = "cpu") -> list[StoredRoom]:
 
 
 def read_radar(folder: Path) -> RadarConfig:
-    """The radar of a data set. Raises InputError where the folder is none, or is damaged."""
+    """Reads the radar of a data set.
+
+    Args:
+        folder: The data set.
+
+    Returns:
+        The radar.
+
+    Raises:
+        InputError: If the folder is not a data set, or damaged.
+    """
     root = CheckedFolder.of(folder, command_of(read_plan(folder), folder))
     root.check()
     with root.reading():
@@ -138,7 +173,17 @@ def read_radar(folder: Path) -> RadarConfig:
 
 
 def plan_text(folder: Path) -> str:
-    """The plan of a data set as JSON text. Raises InputError where the folder is none, or its plan is damaged."""
+    """Reads the plan of a data set as JSON text.
+
+    Args:
+        folder: The data set.
+
+    Returns:
+        Content of plan.json.
+
+    Raises:
+        InputError: If the folder is not a data set, or its plan is damaged.
+    """
     if not (folder / PLAN_FILE).is_file():
         raise InputError(f"{folder} holds no data set (no {PLAN_FILE}); make one with: mmweaver dataset {folder}")
     check_file(folder / PLAN_FILE)
@@ -146,12 +191,12 @@ def plan_text(folder: Path) -> str:
 
 
 def read_plan(folder: Path) -> dict[str, Any]:
-    """The plan of a data set as a dictionary. Raises InputError as `plan_text` does."""
+    """Reads the plan of a data set as a dictionary. Raises InputError as `plan_text` does."""
     return check_plan(parse_json(plan_text(folder), str(folder / PLAN_FILE)), folder / PLAN_FILE)
 
 
 def _room(files: CheckedFolder, config: RadarConfig, device: str) -> StoredRoom | None:
-    """A room whose files are sound, None where no sequence found a place in it."""
+    """Reads a room after checking its files; None if no sequence fits into it."""
     files.check(but=("iq/c/", f"{GEOMETRY}/"))
     with files.reading():
         group = open_zarr(files.folder)
@@ -167,7 +212,7 @@ def _stored_room(files: CheckedFolder, group: ZarrFolder, config: RadarConfig, d
     joints_m = group.numbers("joints_m", pose, kinds="f", low=-FARTHEST_M, high=FARTHEST_M)
     static_shape = (len(config.range_m), len(config.antenna_position_m), 2)
     static = group.numbers("empty_iq", static_shape, kinds="f")
-    people = "subject" if "subject" in group else "person"  # as it was called before 1.0
+    people = "subject" if "subject" in group else "person"  # name before 1.0
     words = {name: group.words(name) for name in ("activity", "text", "split")}
     for name, values in words.items():
         group.check_shape(name, (len(values),), one_each)

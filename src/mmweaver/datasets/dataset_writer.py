@@ -1,7 +1,7 @@
-"""Writes data sets: the root, and each room under a temporary name that is renamed when it is complete.
+"""Writes data sets: the root, and each room under a temporary name that is replaced once it is complete.
 
-A kill at any instant loses only unfinished rooms, and several processes may work on the same set. What the root holds
-follows from plan.json, which the first process creates; each completes what is missing. Layout: `dataset_store`.
+A kill at any instant loses only unfinished rooms, and several processes may work on one set. The root follows from
+plan.json, which the first process creates; each process completes what is missing. Layout: `dataset_store`.
 """
 
 import hashlib
@@ -29,16 +29,22 @@ from mmweaver.datasets.room_generation import GeneratedRoom
 from mmweaver.datasets.zarr_arrays import packed_iq, put_array, put_photo, put_texts, write_iq, zarr_module
 
 LARGEST_ROOT_FILE = 64 * MEGABYTE
-# dimensions and coordinates of one name: xarray.open_datatree hands those of the root down to the rooms
+# dimensions and coordinates share their names, so that rooms inherit those of the root in xarray.open_datatree
 COORDINATES = {"frame_time": "frame_time_s", "range": "range_m", "radial_velocity": "radial_velocity_mps"}
 AXES = (*COORDINATES, "antenna_position_m")
 ROOT_NAMES = (PLAN_FILE, RADAR_FILE, "zarr.json", *AXES, SUMS_FILE)
 
 
 def open_dataset(folder: Path, plan: DatasetPlan, config: RadarConfig) -> None:
-    """Creates the folder of a data set, or completes an existing one of the same plan and radar.
+    """Creates the folder of a data set, or completes an existing one with the same plan and radar.
 
-    Raises InputError for a folder of another plan, of another radar, or of something else.
+    Args:
+        folder: The data set.
+        plan: Its plan.
+        config: Its radar.
+
+    Raises:
+        InputError: If the folder contains something else, or a data set with another plan or radar.
     """
     target = resolved(folder)
     text = plan.to_json()
@@ -90,7 +96,7 @@ def _write_root(stage: Path, plan: DatasetPlan, config: RadarConfig) -> None:
 
 
 def _move_entries(stage: Path, target: Path) -> None:
-    """Moves what is missing or differs, the checksums last; other processes may do the same."""
+    """Moves entries that are missing or differ, checksums last; other processes may do the same concurrently."""
     sync_tree(stage)
     for name in ROOT_NAMES:
         if _contents(stage / name) == _contents(target / name):
@@ -116,9 +122,17 @@ def _read(file: Path) -> bytes:
 
 
 def remove_damaged(folder: Path, plan: DatasetPlan) -> list[str]:
-    """Removes damaged rooms and the damaged root of a data set of this plan, so that they are made anew.
+    """Removes damaged rooms and a damaged root of a data set, so that they are generated again.
 
-    Returns the names of the rooms. Raises InputError where the folder holds another data set.
+    Args:
+        folder: The data set.
+        plan: Its plan.
+
+    Returns:
+        Names of the removed rooms.
+
+    Raises:
+        InputError: If the folder contains a data set with another plan.
     """
     if not (folder / PLAN_FILE).is_file() and not (folder / SUMS_FILE).is_file():
         return []
@@ -152,7 +166,12 @@ def _is_damaged(room: Path) -> bool:
 
 
 def write_room(folder: Path, generated: GeneratedRoom) -> None:
-    """Writes one room atomically; one that is there already is kept, for the same plan gives the same bits."""
+    """Writes one room atomically; an existing room is kept, since equal plans give identical data.
+
+    Args:
+        folder: The data set.
+        generated: The room.
+    """
     with staged_folder(resolved(folder) / generated.spec.name, keep_existing=True) as partial:
         group = zarr_module().open_group(partial, mode="w")
         _put_sequences(group, generated)
@@ -205,9 +224,15 @@ KEY = "consolidated_metadata"
 
 
 def consolidate_rooms(folder: Path, rooms: Sequence[str], axes: Sequence[str]) -> None:
-    """Writes the root's zarr.json anew where it lacks something of these rooms and axes, and its checksum.
+    """Completes the consolidated metadata in the root's zarr.json, and its checksum.
 
-    Raises InputError where metadata of a room is damaged.
+    Args:
+        folder: The data set.
+        rooms: Names of the rooms.
+        axes: Names of the arrays in the root.
+
+    Raises:
+        InputError: If metadata is damaged.
     """
     root = read_json(folder / METADATA)
     files = [file for name in (*axes, *sorted(rooms)) for file in sorted((folder / name).rglob(METADATA))]
@@ -216,7 +241,7 @@ def consolidate_rooms(folder: Path, rooms: Sequence[str], axes: Sequence[str]) -
     text = json.dumps(root | {KEY: gathered})
     held = read_sums(folder) or {}
     sums = held | {METADATA: hashlib.sha256(text.encode()).hexdigest()}
-    if root.get(KEY) == gathered and sums == held:  # a kill may have come between the two files
+    if root.get(KEY) == gathered and sums == held:  # a kill may have occurred between the two files
         return
     with atomic_files(folder / METADATA, folder / SUMS_FILE) as (metadata, listed):
         metadata.write_text(text, encoding="utf-8")

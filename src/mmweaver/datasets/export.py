@@ -1,4 +1,4 @@
-"""Writes results and sets in any format."""
+"""Export of results and sets to other formats."""
 
 import shutil
 from collections.abc import Iterator
@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 from mmweaver.core.atomic_files import atomic_file, staged_folder
 from mmweaver.core.errors import InputError
 
-# imported for their formats, which register themselves
+# imported to register their formats
 from mmweaver.datasets import cloud_layouts, containers, rerun_file, robotics, tensor_layouts, videos  # noqa: F401
 from mmweaver.datasets.formats import FORMATS
 from mmweaver.datasets.set_results import results_of_set
@@ -17,19 +17,19 @@ from mmweaver.io.stored_result import StoredResult, read_result
 
 
 def export_result(folder: Path | str, kind: str, out: Path | str, *, overwrite: bool = False) -> str:
-    """Writes a result folder in another format, or nothing.
+    """Exports a result folder to another format, completely or not at all.
 
     Args:
         folder: The result; for some formats a folder of two radars of one scene.
-        kind: Name in FORMATS.
-        out: Folder that is written, or the one file of a format that has one.
-        overwrite: Whether files may be replaced.
+        kind: Key of FORMATS.
+        out: Output folder, or the file of a single-file format.
+        overwrite: Whether files may be replaced. Default: False.
 
     Returns:
-        What was written, in words.
+        Description of what was written.
 
     Raises:
-        InputError: for another name, for a folder that is no result, and for a result that the format cannot hold.
+        InputError: If the format is unknown, the folder is not a result, or the format cannot represent it.
     """
     if kind not in FORMATS:
         raise InputError(f"unknown format {kind!r}; known: {', '.join(FORMATS)}")
@@ -41,9 +41,19 @@ def export_result(folder: Path | str, kind: str, out: Path | str, *, overwrite: 
 
 
 def export_stored(result: StoredResult, kind: str, out: Path | str, *, overwrite: bool = False) -> str:
-    """Writes a result in another format into the folder `out`, as `export_result` does.
+    """Exports a result in memory, as `export_result` does.
 
-    With the ending of a format of one file, as in walk.mp4, `out` is that file.
+    Args:
+        result: The result.
+        kind: Key of FORMATS.
+        out: Output folder; with the suffix of a single-file format, such as walk.mp4, the file.
+        overwrite: Whether files may be replaced. Default: False.
+
+    Returns:
+        Description of what was written.
+
+    Raises:
+        InputError: If the file exists without `overwrite`, or the format cannot represent the result.
     """
     out, ending = Path(out), FORMATS[kind].ending
     if ending and out.suffix == ending and not out.is_dir():
@@ -60,19 +70,19 @@ def export_stored(result: StoredResult, kind: str, out: Path | str, *, overwrite
 def export_set(
     folder: Path | str, kind: str, out: Path | str, *, overwrite: bool = False
 ) -> Iterator[tuple[Path, str]]:
-    """Writes every sequence of a set, labelled or of rooms, into a folder of its own below `out`.
+    """Exports every sequence of a set, labelled or of rooms, to its own folder below `out`.
 
     Args:
         folder: The set.
-        kind: Name in FORMATS.
-        out: Folder of the folders.
-        overwrite: Whether files may be replaced.
+        kind: Key of FORMATS.
+        out: Parent folder.
+        overwrite: Whether files may be replaced. Default: False.
 
     Yields:
-        Each folder with what it holds.
+        Each folder with a description of its content.
 
     Raises:
-        InputError: for a format that needs raw samples, which a set does not keep, and for what is no set.
+        InputError: If the format needs raw samples, which sets do not contain, or the folder is not a set.
     """
     if FORMATS[kind].needs_samples:
         raise InputError(f"{kind} needs raw samples, which a set does not keep; generate results with --bin")
@@ -81,6 +91,6 @@ def export_set(
 
 
 def is_of_two_radars(folder: Path, kind: str) -> bool:
-    """Whether a folder holds the results of several radars of one scene, and the format takes two together."""
+    """Whether a folder contains results of several radars of one scene that the format combines."""
     two = [folder / radar_folder(number) / "radar.npz" for number in (1, 2)]
     return FORMATS[kind].write_pair is not None and all(file.is_file() for file in two)

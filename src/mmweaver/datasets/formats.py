@@ -1,4 +1,4 @@
-"""The formats that results are exported to: each is one function, declared by one decorator.
+"""Export formats of results: one decorated function per format.
 
 @export_format("mat", "MATLAB", ending=".mat")
 def write_mat(result: StoredResult, out: Path) -> str: ...
@@ -10,18 +10,18 @@ from pathlib import Path
 
 from mmweaver.io.stored_result import StoredResult
 
-Write = Callable[[StoredResult, Path], str]  # writes into a folder, and reports what
+Write = Callable[[StoredResult, Path], str]  # writes into a folder and describes what was written
 WritePair = Callable[[StoredResult, StoredResult, Path], str]
 
 
 @dataclass(frozen=True, kw_only=True)
 class ExportFormat:
-    """One format: what it is, and the functions that write it into a folder."""
+    """One export format with the functions that write it into a folder."""
 
     what: str
     write: Write
     needs_samples: bool
-    ending: str  # of the one file that it writes, "" where it writes more
+    ending: str  # suffix of a single-file format, else ""
     write_pair: WritePair | None  # for two radars of one scene
 
 
@@ -31,17 +31,17 @@ FORMATS: dict[str, ExportFormat] = {}
 def export_format(
     name: str, what: str, *, needs_samples: bool = False, ending: str = "", write_pair: WritePair | None = None
 ) -> Callable[[Write], Write]:
-    """Declares the function that writes a format.
+    """Decorator that registers the function that writes a format.
 
     Args:
         name: Name for `--to`.
-        what: What it is, for people.
-        needs_samples: Whether a result without raw samples cannot be written so.
-        ending: Suffix of result.SUFFIX, where that is the one file that is written.
-        write_pair: Function for two radars of one scene.
+        what: Description for messages.
+        needs_samples: Whether the format requires raw samples. Default: False.
+        ending: Suffix of the single file result.SUFFIX. Default: several files.
+        write_pair: Function for two radars of one scene. Default: none.
 
     Returns:
-        A decorator that leaves the function as it is.
+        A decorator that leaves the function unchanged.
     """
 
     def register(write: Write) -> Write:

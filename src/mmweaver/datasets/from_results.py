@@ -1,7 +1,7 @@
-"""A labelled set from result folders: those of `mmweaver generate --texts`, of an export, or recorded ones with joints.
+"""A labelled set from result folders: of `mmweaver generate --texts`, of an export, or recorded ones with joints.
 
-A sequence is labelled by its sentence, or by the activity whose sentences hold it. What a folder does not say (a place,
-a person) is taken from its joints, or is unknown (-1).
+A sequence is labelled by its sentence, or by the activity that includes its sentence. Missing information (place,
+person) is derived from the joints, or unknown (-1).
 """
 
 import json
@@ -30,11 +30,21 @@ from mmweaver.io.stored_result import StoredResult, read_result
 from mmweaver.signal.features import point_table
 
 SAME_PLACE_M = 0.05
-OWN = ("room", "place", "split")  # what an export of a set says of each sequence
+OWN = ("room", "place", "split")  # stored per sequence by an export of a set
 
 
 def result_folders(folder: Path) -> list[Path]:
-    """The result folders in a folder, by name. Raises InputError where there is none."""
+    """Lists the result folders in a folder, by name.
+
+    Args:
+        folder: Parent folder.
+
+    Returns:
+        The result folders.
+
+    Raises:
+        InputError: If there are none.
+    """
     found = sorted(file.parent for file in folder.glob("*/radar.npz")) if folder.is_dir() else []
     if not found:
         raise InputError(f"{folder} holds no result folders; give what mmweaver generate --texts wrote")
@@ -50,19 +60,23 @@ def set_of_results(
     seed: int = 0,
     command: str,
 ) -> dict[str, Any]:
-    """Writes the set into `out` and returns its leak report.
+    """Builds a labelled set from result folders.
 
     Args:
-        source: Folder of result folders.
+        source: Parent folder of the results.
         out: Folder of the set.
-        activities: Labels with their sentences; None: each sentence is a label.
-        split_by: What is held out; None: the splits of the set that the folders were exported from, else people.
-        seed: Of the splits.
-        command: The command line, for set.json.
+        activities: Sentences by label. Default: each sentence is a label.
+        split_by: Property that is held out. Default: the splits of the set from which the folders were exported, else
+            by subject.
+        seed: Seed of the splits. Default: 0.
+        command: Command line, stored in set.json.
+
+    Returns:
+        The leak report.
 
     Raises:
-        InputError: For folders of several radars, lengths or people, without joints, or with a sentence that is no
-            activity's.
+        InputError: If results differ in radar, length or number of people, lack joints, or have a sentence of no
+            activity.
     """
     folders = result_folders(source)
     first = read_result(folders[0])
@@ -104,7 +118,7 @@ def set_of_results(
     is_split = split_by is None and all(isinstance(one, str) and one for one in columns["split"])
     columns |= splits if is_split else splits | {"split": splits[f"split_{split_by or 'subject'}"]}
     with staged_folder(out) as stage:
-        signals = (packed_iq(read_result(folder).cube)[0] for folder in folders)  # one cube at a time in memory
+        signals = (packed_iq(read_result(folder).cube)[0] for folder in folders)  # keep one cube at a time in memory
         write_labelled(stage, first.cube.config, names, columns, arrays, signals, "float16")
         found = circumstances(
             arrays["joints_m"], np.asarray(columns["label"]), person=columns["subject"], height=columns["height"]
@@ -116,7 +130,7 @@ def set_of_results(
 
 
 def _labels(folders: Sequence[Path], activities: Activities | None) -> list[str]:
-    """The label of each folder."""
+    """Label of each folder."""
     texts = [_text(folder) for folder in folders]
     if activities is None:
         return texts
@@ -137,7 +151,7 @@ def _text(folder: Path) -> str:
 
 
 def _checked(result: StoredResult, folder: Path, first: StoredResult) -> PoseSequence:
-    """The person's joints. Raises InputError where the result does not fit the first one."""
+    """Joints of the person. Raises InputError if the result does not match the first one."""
     if len(result.poses) != 1:
         raise InputError(f"{folder} has {len(result.poses)} people with joints; a labelled set is of one person each")
     if result.cube.values.shape != first.cube.values.shape or result.cube.config != first.cube.config:
@@ -157,7 +171,7 @@ def _numbers(values: list[Any], name: str, source: Path) -> np.ndarray:
 
 
 def _numbered(values: list[Any]) -> list[int]:
-    """Numbers as they are where all are; else a number for each different value."""
+    """Keeps the values if all are valid numbers; otherwise numbers the distinct values."""
     if all(type(value) is int and 0 <= value < 2**31 for value in values):
         return values
     known = sorted({str(value) for value in values})
@@ -165,7 +179,7 @@ def _numbered(values: list[Any]) -> list[int]:
 
 
 def _places(joints_m: Sequence[np.ndarray]) -> list[int]:
-    """A number for each place, shared by starts within 5 cm."""
+    """Numbers the start places; starts within 5 cm share a number."""
     found: list[np.ndarray] = []
     numbers = []
     for start_m in (one[0, joint("pelvis"), :2].astype(np.float64) for one in joints_m):
@@ -177,13 +191,13 @@ def _places(joints_m: Sequence[np.ndarray]) -> list[int]:
 
 
 def _heading(joints_m: np.ndarray) -> float:
-    """Where the hips face at first, from +x towards +y."""
+    """Initial direction of the hips, from +x towards +y."""
     across = joints_m[0, joint("right_hip"), :2] - joints_m[0, joint("left_hip"), :2]
     return float(np.arctan2(across[0], -across[1]))
 
 
 def _describe(stage: Path, names: tuple[str, ...], columns: dict[str, Any], config: RadarConfig, command: str) -> None:
-    """set.json and activities.toml."""
+    """Writes set.json and activities.toml."""
     import tomli_w
 
     sentences = {name: [] for name in names}

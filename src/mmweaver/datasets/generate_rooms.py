@@ -1,4 +1,4 @@
-"""Generates the missing rooms of a data set, on the cores of this machine or on a Ray cluster."""
+"""Generates the missing rooms of a data set on the cores of this machine or on a Ray cluster."""
 
 import os
 from collections.abc import Callable, Iterable, Iterator
@@ -24,7 +24,7 @@ class RoomReport:
 
     name: str
     num_sequences: int
-    refused: tuple[tuple[int, str], ...]  # index of the sequence, and why it does not fit the room
+    refused: tuple[tuple[int, str], ...]  # index of the sequence, reason why it does not fit the room
 
 
 def generate_dataset(
@@ -37,22 +37,22 @@ def generate_dataset(
     listener: Callable[[RoomReport], object] | None = None,
     repair: bool = False,
 ) -> list[RoomReport]:
-    """Generates the missing rooms; may be killed and called again.
+    """Generates the missing rooms; can be killed and called again.
 
     Args:
         folder: The data set.
-        plan: What it holds.
+        plan: Its plan.
         config: The radar.
-        workers: Processes of this machine.
-        ray_address: Of a Ray cluster, one task per core; "local": an embedded one; default: no Ray.
-        listener: Called with the report of each finished room.
-        repair: Whether existing rooms are checked, and damaged ones made anew.
+        workers: Number of local processes. Default: 1.
+        ray_address: Address of a Ray cluster, one task per core; "local" for an embedded one. Default: no Ray.
+        listener: Called with the report of each finished room. Default: none.
+        repair: Whether existing rooms are checked and damaged ones regenerated. Default: False.
 
     Returns:
-        A report of each room that was generated now.
+        Reports of the rooms that were generated in this call.
 
     Raises:
-        InputError: For a folder of another plan, and where a worker was killed.
+        InputError: If the folder has another plan, a package is missing, or a worker was killed.
     """
     check_packages(ray_address)
     rooms = plan.rooms()
@@ -80,7 +80,7 @@ def generate_dataset(
 
 
 def check_packages(ray_address: str | None) -> None:
-    """Raises InputError where a package is missing that `generate_dataset` needs."""
+    """Raises InputError if a package that `generate_dataset` needs is missing."""
     if ray_address is None:
         need("dataset", "a data set", "zarr")
     else:
@@ -91,7 +91,14 @@ Task = tuple[Path, RoomSpec, RadarConfig, int, bool, Board]
 
 
 def generate_one(task: Task) -> RoomReport:
-    """Generates and writes one room on one thread."""
+    """Generates and writes one room on a single thread.
+
+    Args:
+        task: Folder, room, radar, frames per sequence, whether only geometry is stored, and board.
+
+    Returns:
+        Summary of the room.
+    """
     from threadpoolctl import threadpool_limits
 
     from mmweaver.datasets.room_generation import generate_room
@@ -117,7 +124,7 @@ def _executor(workers: int, ray_address: str | None) -> Iterator[Callable[[Itera
 
 @contextmanager
 def _processes(workers: int) -> Iterator[Callable[[Iterable[Task]], Iterator[RoomReport]]]:
-    """Processes of this machine. Raises InputError where one of them was killed; multiprocessing.Pool would wait."""
+    """Local processes. Raises InputError if one is killed, in which case multiprocessing.Pool would hang."""
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor, as_completed
     from concurrent.futures.process import BrokenProcessPool
@@ -146,7 +153,7 @@ def _processes(workers: int) -> Iterator[Callable[[Iterable[Task]], Iterator[Roo
 
 
 def _end_with_parent() -> None:
-    """A worker ends at once, without a word, when it is interrupted or its parent is killed."""
+    """Ends a worker silently when it is interrupted or its parent is killed."""
     import multiprocessing
     import signal
     import threading
@@ -165,7 +172,7 @@ def _end_with_parent() -> None:
 
 @contextmanager
 def _ray(workers: int, address: str) -> Iterator[Callable[[Iterable[Task]], Iterator[RoomReport]]]:
-    """One task per room; a lost task is retried elsewhere, for rooms are written atomically."""
+    """One task per room; a lost task is retried elsewhere, which is safe since rooms are written atomically."""
     import ray
 
     if address == "local":

@@ -1,11 +1,11 @@
-"""The part of a data set that signals are made from on the fly: prepared rooms and traced motions.
+"""Stored geometry from which signals are synthesised on the fly: prepared rooms and traced motions.
 
     OUT/office_003/geometry/       instead of iq and iq_scale
         node_joints_m    (sequence, frame, node, joint, axis) float32, at the nodes of propagation.frame_clock
         visibility       (sequence, frame, byte)  bits of propagation.visibility
-        room/, photographed/   propagation.static_paths_store: the room as it is, and as its photo shows it
+        room/, photographed/   propagation.static_paths_store: the true room, and the room reconstructed from its photo
 
-No ray caster is needed to read it. Reference: docs/decisions/data-set-plan.md.
+Reading it requires no ray caster. Reference: docs/decisions/data-set-plan.md.
 """
 
 import hashlib
@@ -33,8 +33,8 @@ from mmweaver.propagation.visibility import Visibility
 
 GEOMETRY = "geometry"
 ROOMS = ("room", "photographed")
-FARTHEST_M = 1e4  # of joints and of what a room is made of; what is beyond is damage
-# Arrays of a prepared room (`room_arrays`): shape and kind of numbers.
+FARTHEST_M = 1e4  # limit of joints and room coordinates; anything beyond indicates damage
+# Arrays of a prepared room (`room_arrays`): shape and dtype kind.
 ROOM_ARRAYS: dict[str, tuple[tuple[int | str, ...], str]] = {
     "count": ((len(STATIC_KINDS),), "iu"),
     "place_m": (("path", 3), "f"),
@@ -47,7 +47,13 @@ ROOM_ARRAYS: dict[str, tuple[tuple[int | str, ...], str]] = {
 
 
 def write_geometry(group: Any, geometry: RoomGeometry, traces: Sequence[tuple[np.ndarray, Visibility]]) -> None:
-    """Puts all of it below a room's Zarr group; `traces`: of each sequence, as `GeneratedSequence` has them."""
+    """Writes geometry into a room's Zarr group.
+
+    Args:
+        group: The group.
+        geometry: Static paths of the room.
+        traces: Joints at the clock's nodes and visibility of each sequence, as in `GeneratedSequence`.
+    """
     below = group.create_group(GEOMETRY)
     below.attrs.update({"skin": skin_mark(), "propagation": asdict(geometry.room.propagation)})
     if traces:
@@ -64,7 +70,7 @@ def write_geometry(group: Any, geometry: RoomGeometry, traces: Sequence[tuple[np
 
 
 def _put(group: Any, name: str, values: np.ndarray, dimensions: tuple[str, ...]) -> None:
-    """One array in one piece; numbers that resemble their neighbours are packed bit by bit."""
+    """Writes an array as one chunk; floats are bit-shuffled, since neighbouring values are similar."""
     from zarr.codecs import BloscCodec
 
     packing = BloscCodec(cname="zstd", clevel=7, shuffle="bitshuffle" if values.dtype.kind == "f" else "noshuffle")
@@ -73,7 +79,7 @@ def _put(group: Any, name: str, values: np.ndarray, dimensions: tuple[str, ...])
 
 @lru_cache(maxsize=1)
 def skin_mark() -> str:
-    """Names the skin points that visibility is about: another number or place of them has another mark."""
+    """Fingerprint of the skin points to which visibility refers; it changes with their number or positions."""
     body = ScatteringBody(0, REFERENCE_HEIGHT_M)
     parts = (body.part, np.round(1e6 * body.along).astype(np.int64), np.round(1e6 * body.angle_rad).astype(np.int64))
     return hashlib.sha256(np.concatenate([*parts, ghost_points(body)]).astype("<i8").tobytes()).hexdigest()[:16]
@@ -81,15 +87,15 @@ def skin_mark() -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class StoredGeometry:
-    """The geometry of one room, read when it is first asked for."""
+    """Geometry of one room, read at first use."""
 
-    files: CheckedFolder  # the room's
+    files: CheckedFolder  # folder of the room
     config: RadarConfig
     _resyntheses: dict[str, Any] = field(default_factory=dict)
 
     @cached_property
     def node_joints_m(self) -> np.ndarray:
-        """(sequence, frame, node, 22, 3)."""
+        """Joints at the clock's nodes in metres, (sequence, frame, node, 22, 3)."""
         shape = ("sequence", "frame", "node", 22, 3)
         with self.files.reading():
             return self._arrays.numbers("node_joints_m", shape, kinds="f", low=-FARTHEST_M, high=FARTHEST_M)
@@ -102,23 +108,40 @@ class StoredGeometry:
 
     @cached_property
     def room(self) -> PreparedRoom:
-        """As it is: the signal is made in it."""
+        """The true room, in which signals are synthesised."""
         return self._read("room")
 
     @cached_property
     def photographed(self) -> PreparedRoom:
-        """As its photo shows it: what the network sees."""
+        """The room as reconstructed from its photo, which the network sees."""
         return self._read("photographed")
 
     def cube(self, motion: Any, frames: np.ndarray, *, realization: int, device: str) -> np.ndarray:
-        """Frames of a traced motion's cube in sqrt(mW), complex64 (frame, range, doppler, antenna)."""
+        """Synthesises frames of a traced motion.
+
+        Args:
+            motion: The `TracedMotion`.
+            frames: Indices of frames.
+            realization: Realization of speckle and noise.
+            device: Torch device.
+
+        Returns:
+            Cube in sqrt(mW), complex64 (frame, range, doppler, antenna).
+        """
         from mmweaver.signal.cube import cube_values
 
         samples = self.resynthesis(device).samples(motion, frames, realization=realization)
         return cube_values(samples, self.config).cpu().numpy()
 
     def resynthesis(self, device: str) -> Any:
-        """The room's `Resynthesis` on a device, made once."""
+        """Prepares the room for synthesis on a device, once per device.
+
+        Args:
+            device: Torch device.
+
+        Returns:
+            The room's `Resynthesis`.
+        """
         from mmweaver.propagation.resynthesis import Resynthesis
 
         if device not in self._resyntheses:
@@ -126,7 +149,20 @@ class StoredGeometry:
         return self._resyntheses[device]
 
     def motion(self, index: int, *, person: int, height_m: float, seed: int) -> Any:
-        """The `TracedMotion` of one sequence."""
+        """Reads the traced motion of one sequence.
+
+        Args:
+            index: Index of the sequence.
+            person: Index of the person, which selects the body surface.
+            height_m: Body height in metres.
+            seed: Seed of the sequence.
+
+        Returns:
+            The `TracedMotion`.
+
+        Raises:
+            InputError: If the geometry is damaged or of another version.
+        """
         from mmweaver.propagation.resynthesis import TracedMotion
 
         if index >= len(self._visibility):
@@ -171,7 +207,7 @@ class StoredGeometry:
 
     @property
     def _propagation(self) -> Propagation:
-        """Which paths the rooms have; sets of before this was kept do not say."""
+        """Propagation options of the stored rooms; older data sets do not state them."""
         known = {one.name: type(one.default) for one in fields(Propagation)}
         if "propagation" not in self._arrays.attrs:
             return AS_PUBLISHED
@@ -185,7 +221,7 @@ class StoredGeometry:
 
 
 def _check_room(group: ZarrFolder, arrays: dict[str, np.ndarray], words: list[Any]) -> None:
-    """Raises InputError where counts do not add up, lengths are not positive, or a face has no kind and material."""
+    """Raises InputError if counts are inconsistent, lengths are not positive, or a face lacks kind or material."""
     group.check_shape("faces", (len(words),), ("face",))
     group.check_shape("count", (int(arrays["count"].sum()),), ("path",))
     mirrored = int(arrays["count"][STATIC_KINDS.index(Interaction.SPECULAR)])

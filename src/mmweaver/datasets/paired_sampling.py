@@ -1,9 +1,9 @@
-"""Paired sampling: each place, heading, person and seed is used once for every label, so that none of them predicts it.
+"""Paired sampling: each place, heading, person and seed is used once for every label, so that none predicts it.
 
-A draw with which one label cannot be carried out is replaced for all labels. Where a room has no place that serves all
-labels, those that it does not serve start elsewhere, with the same person and seed, and the leak report says so. No two
-draws start at exactly the same point: a stance that moves the hips by centimetres (boxing: 6 cm) would otherwise
-predict the label at a place that was seen before.
+A draw that one label cannot use is replaced for all labels. If no place in a room serves all labels, the labels that it
+does not serve start elsewhere, with the same person and seed, and the leak report states it. No two draws start at
+exactly the same point: a stance that shifts the hips by centimetres (boxing: 6 cm) would otherwise predict the label at
+a known place.
 """
 
 import math
@@ -28,25 +28,32 @@ from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.weaver.front_door import compose_request
 from mmweaver.weaver.parsed_request import ParsedRequest
 
-MAX_ATTEMPTS = 60  # places and headings that are tried for a draw of all labels
-MAX_OWN_ATTEMPTS = 300  # and for a label that the best of these does not serve
-SAME_PLACE_ATTEMPTS = 20  # of which are at the place of the others
-AROUND_PLACE_M = 0.25  # either way: how far from a place its draws start
-NUM_SUBJECTS = 10_000  # people that the motion library has
-PLACES, SUBJECTS = 12, 10  # of the sequences of one room
-TRIES = 3  # seeds with which a sentence is tried wherever the planner likes
+MAX_ATTEMPTS = 60  # places and headings tried for a draw of all labels
+MAX_OWN_ATTEMPTS = 300  # further ones for a label that the best draw does not serve
+SAME_PLACE_ATTEMPTS = 20  # the first of these keep the place of the other labels
+AROUND_PLACE_M = 0.25  # maximum distance of starts from the centre of a place, per axis
+NUM_SUBJECTS = 10_000  # people in the motion library
+PLACES, SUBJECTS = 12, 10  # for sequences in one room
+TRIES = 3  # seeds with which a sentence is tried at any place
 
 
 @dataclass(frozen=True, kw_only=True)
 class StartPlace:
-    """A place of a room: the free floor around its centre, where its draws start."""
+    """A place in a room: free floor around its centre, where draws start."""
 
     centre_m: tuple[float, float]
-    free_m: Float[Array, "cell 2"]  # centres (x, y) of the floor's free cells
-    cell_m: float  # side of a cell
+    free_m: Float[Array, "cell 2"]  # centres (x, y) of free floor cells
+    cell_m: float  # edge length of a cell
 
     def sampled_m(self, rng: np.random.Generator) -> tuple[float, float]:
-        """A position (x, y) on the free floor, uniformly distributed, in millimetres of resolution."""
+        """Samples a position on the free floor uniformly.
+
+        Args:
+            rng: Random generator.
+
+        Returns:
+            (x, y) in metres, rounded to millimetres.
+        """
         within_cell_m = rng.uniform(-0.49, 0.49, 2) * self.cell_m
         x_m, y_m = self.free_m[int(rng.integers(len(self.free_m)))] + within_cell_m
         return round(float(x_m), 3), round(float(y_m), 3)
@@ -54,7 +61,7 @@ class StartPlace:
 
 @dataclass(frozen=True, kw_only=True)
 class Draw:
-    """Where, how and by whom a sequence is done; all labels of a draw share it where the room allows."""
+    """Place, heading, person and seed of a sequence, shared by all labels of a draw if the room permits."""
 
     index: int
     room: int
@@ -63,7 +70,7 @@ class Draw:
     heading_rad: float
     subject: int
     seed: int
-    is_shared: bool = True  # False: a start and heading of one label alone
+    is_shared: bool = True  # False: start and heading are used by one label only
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,9 +84,19 @@ class PlannedSequence:
 
 
 def places_of(scene: Scene, range_window_m: tuple[float, float], number: int, seed: int) -> list[StartPlace]:
-    """At most `number` places where a person can stand in view, far from each other (farthest-point sampling).
+    """Selects places where a person can stand in view, far from each other (farthest-point sampling).
 
-    Raises InputError where there is none.
+    Args:
+        scene: The room.
+        range_window_m: Range window (near, far) of the radar in metres.
+        number: Maximum number of places.
+        seed: Seed of the first place.
+
+    Returns:
+        At most `number` places.
+
+    Raises:
+        InputError: If there is none.
     """
     floor = FloorMap(scene, range_window_m, REFERENCE_HEIGHT_M)
     cells_m = floor.walkable_m
@@ -105,13 +122,24 @@ def paired_draws(
     labels: int,
     obstacle: Callable[[Draw, int], str],
 ) -> Iterator[list[Draw]]:
-    """`number` times the draw of each label, over rooms and people in turn; one draw serves all labels if any does.
+    """Samples draws over rooms and people in turn; one draw serves all labels if any does.
 
-    `places`: of every room. `obstacle` says why a draw does not serve a label ("": it does). Raises InputError where
-    nothing serves a label.
+    Args:
+        places: Places of every room.
+        number: Number of draws.
+        subjects: Number of people.
+        seed: Seed of the draws.
+        labels: Number of labels.
+        obstacle: Why a draw does not serve a label; "" if it does.
+
+    Yields:
+        The draw of each label.
+
+    Raises:
+        InputError: If no draw serves a label.
     """
     people = stream(seed, "activity set", "subjects").permutation(NUM_SUBJECTS)[:subjects]
-    failures: Counter[int] = Counter()  # labels that failed most often are tried first: others are then not tried
+    failures: Counter[int] = Counter()  # labels that failed most often are tried first, to reject a draw early
     for index in range(number):
         room = index % len(places)
         rng = stream(seed, "activity set", "draw", index)
@@ -136,7 +164,7 @@ def paired_draws(
 
 
 def _placing(places: list[StartPlace], place: int, rng: np.random.Generator) -> dict[str, Any]:
-    """A start and a heading at a place."""
+    """Samples start and heading at a place."""
     start_m = places[place].sampled_m(rng)
     return {"place": place, "start_m": start_m, "heading_rad": round(rng.uniform(-np.pi, np.pi), 4)}
 
@@ -144,7 +172,7 @@ def _placing(places: list[StartPlace], place: int, rng: np.random.Generator) -> 
 def _own(
     shared: Draw, label: int, places: list[StartPlace], rng: np.random.Generator, obstacle: Callable[[Draw, int], str]
 ) -> Draw:
-    """The draw of a label that `shared` does not serve, near it if possible. Raises InputError where none serves."""
+    """Draw of a label that `shared` does not serve, nearby if possible. Raises InputError if there is none."""
     why = ""
     for attempt in range(MAX_OWN_ATTEMPTS):
         place = shared.place if attempt < SAME_PLACE_ATTEMPTS else int(rng.integers(len(places)))
@@ -159,9 +187,15 @@ def _own(
 
 
 def obstacle_of(request: ParsedRequest, scene: Scene, sentence: str) -> str:
-    """Why a sentence cannot be carried out with its draw in a scene; "" where it can.
+    """Why a sentence cannot be performed with its draw in a scene.
 
-    Without the advice of the error: that concerns a single start, not a set.
+    Args:
+        request: Request with the placement of the draw.
+        scene: The room.
+        sentence: The sentence.
+
+    Returns:
+        The reason without the error's advice, which concerns a single start; "" if there is no obstacle.
     """
     try:
         compose_request(request, scene)
@@ -171,7 +205,16 @@ def obstacle_of(request: ParsedRequest, scene: Scene, sentence: str) -> str:
 
 
 def unpaired_reasons(draws: Sequence[Draw], label: Sequence[int], label_names: Sequence[str]) -> dict[str, str]:
-    """Why start place and heading are not those of the other labels, by circumstance; empty where all are shared."""
+    """Why start place and heading differ between labels.
+
+    Args:
+        draws: Draw of each sequence.
+        label: Label number of each sequence.
+        label_names: Names of the labels by number.
+
+    Returns:
+        Reason by circumstance; empty if all draws are shared.
+    """
     own = Counter(label_names[one] for draw, one in zip(draws, label, strict=True) if not draw.is_shared)
     if not own:
         return {}
@@ -181,7 +224,7 @@ def unpaired_reasons(draws: Sequence[Draw], label: Sequence[int], label_names: S
 
 
 def shuffled(sequences: list[PlannedSequence], seed: int) -> list[PlannedSequence]:
-    """In random order, so that a sequence's number says nothing of its label."""
+    """Random order, so that the index of a sequence carries no information on its label."""
     order = stream(seed, "activity set", "order").permutation(len(sequences))
     return [sequences[int(place)] for place in order]
 
@@ -189,15 +232,23 @@ def shuffled(sequences: list[PlannedSequence], seed: int) -> list[PlannedSequenc
 # sentences in one room ----------------------------------------------------------------------------------------------
 @dataclass(frozen=True, kw_only=True)
 class GivenPlacing:
-    """What every sequence shares because the user says so; None is drawn."""
+    """Placement that the user fixed for all sequences; None is sampled."""
 
     start_m: tuple[float, float] | None = None
-    heading_deg: float | None = None  # 0 towards the radar, 90 to the picture's right
+    heading_deg: float | None = None  # 0 towards the radar, 90 to the right of the picture
     height_m: float | None = None
     subject: int | None = None
 
     def applied(self, draw: Draw, seed: int | None = None) -> Draw:
-        """The draw with what is given; its heading is a multiple of 0.1 degrees, its seed its own or from `seed` on."""
+        """Overrides a draw by the fixed placement.
+
+        Args:
+            draw: The draw.
+            seed: First seed, to which the index of the draw is added. Default: the draw's own seed.
+
+        Returns:
+            The draw, with its heading rounded to 0.1 degrees.
+        """
         degrees = round(math.degrees(draw.heading_rad) + 90, 1) if self.heading_deg is None else self.heading_deg
         subject = draw.subject if self.subject is None else self.subject
         return replace(
@@ -210,7 +261,13 @@ class GivenPlacing:
 
 
 def heading_rad(degrees: float) -> float:
-    """The direction, from +x towards +y, of a heading on the command line.
+    """Converts a heading of the command line to a direction.
+
+    Args:
+        degrees: 0 towards the radar, 90 to the right of the picture.
+
+    Returns:
+        Direction in radians, from +x towards +y.
 
     >>> heading_rad(90.0)
     0.0
@@ -219,7 +276,7 @@ def heading_rad(degrees: float) -> float:
 
 
 def heading_deg(draw: Draw) -> float:
-    """The heading of a draw as the command line takes it.
+    """Heading of a draw in degrees, as on the command line.
 
     >>> ahead = heading_rad(33.3)
     >>> heading_deg(Draw(index=0, room=0, place=0, start_m=(0.0, 2.0), heading_rad=ahead, subject=0, seed=0))
@@ -229,7 +286,16 @@ def heading_deg(draw: Draw) -> float:
 
 
 def placed(request: ParsedRequest, draw: Draw, height_m: float | None = None) -> ParsedRequest:
-    """The request of one person with the place, heading, person and seed of a draw."""
+    """Applies a draw to the request of one person.
+
+    Args:
+        request: The request.
+        draw: Place, heading, person and seed.
+        height_m: Body height in metres. Default: the person's.
+
+    Returns:
+        The request.
+    """
     person = replace(request.people[0], start_m=draw.start_m, subject=draw.subject, height_m=height_m)
     return replace(request, people=(person,), heading_rad=draw.heading_rad, seed=draw.seed)
 
@@ -237,9 +303,20 @@ def placed(request: ParsedRequest, draw: Draw, height_m: float | None = None) ->
 def sentence_draws(
     requests: dict[str, ParsedRequest], scene: Scene, number: int, seed: int, given: GivenPlacing
 ) -> tuple[list[dict[str, Draw]], dict[str, str]]:
-    """`number` times the draw of each sentence, and why each sentence that the room has no place for is left out.
+    """Samples draws for sentences in one room.
 
-    Raises InputError where nothing serves one of the rest.
+    Args:
+        requests: Request of each sentence.
+        scene: The room.
+        number: Number of draws.
+        seed: Seed of the draws.
+        given: Fixed placement.
+
+    Returns:
+        For each draw, the placement of each sentence; and the reason for each sentence that fits nowhere.
+
+    Raises:
+        InputError: If no draw serves one of the other sentences.
     """
     refused = unplaceable(requests, scene, seed)
     texts = [text for text in requests if text not in refused]
@@ -258,7 +335,16 @@ def sentence_draws(
 
 
 def unplaceable(requests: dict[str, ParsedRequest], scene: Scene, seed: int) -> dict[str, str]:
-    """Why each sentence that the room has no place for wherever the planner tries cannot be made, by sentence."""
+    """Finds sentences that fit nowhere in a room.
+
+    Args:
+        requests: Request of each sentence.
+        scene: The room.
+        seed: First seed of the attempts.
+
+    Returns:
+        Reason by sentence.
+    """
     refused: dict[str, str] = {}
     for text, request in requests.items():
         for number in range(TRIES):
@@ -273,14 +359,24 @@ def unplaceable(requests: dict[str, ParsedRequest], scene: Scene, seed: int) -> 
 
 
 def sentence_order(texts: Sequence[str], draw: int, seed: int) -> list[str]:
-    """The sentences of a draw in random order, so that a sequence's number says nothing of its sentence."""
+    """Random order of the sentences of a draw, so that a sequence's index carries no information on its sentence."""
     return [texts[int(place)] for place in stream(seed, "sentence draws", "order", draw).permutation(len(texts))]
 
 
 def folder_leaks(
     folders: Sequence[Path], texts: Sequence[str], draws: Sequence[Draw], requests: Sequence[ParsedRequest]
 ) -> dict[str, Any]:
-    """The leak report of result folders: what predicts their sentences without a look at the radar signal."""
+    """Leak report of result folders: what predicts their sentences without the radar signal.
+
+    Args:
+        folders: The results.
+        texts: Sentence of each result.
+        draws: Draw of each result.
+        requests: Request of each sentence.
+
+    Returns:
+        The report, see `confounders.leak_report`.
+    """
     poses = [read_poses_npz(folder / "pose.npz")[0] for folder in folders]
     names = list(dict.fromkeys(texts))
     label = np.asarray([names.index(text) for text in texts])
@@ -300,7 +396,14 @@ def folder_leaks(
 
 # sentences that describe different people ("she", "an old man") ------------------------------------------------------
 def differing_descriptions(requests: Iterable[ParsedRequest]) -> list[str]:
-    """The words of the sentences that describe their person; none where all describe the same kind of person."""
+    """Finds descriptions of people that differ between sentences.
+
+    Args:
+        requests: Parsed sentences.
+
+    Returns:
+        Words that describe a person; empty if all sentences describe the same kind of person.
+    """
     people = [_described(request) for request in requests]
     if len({replace(one, words="") for one in people}) < 2:
         return []
@@ -308,7 +411,14 @@ def differing_descriptions(requests: Iterable[ParsedRequest]) -> list[str]:
 
 
 def done_by_anybody(request: ParsedRequest) -> ParsedRequest:
-    """The request without what its sentence says of the person: the subject alone decides who does it."""
+    """Removes the description of the person from a request, so that only the subject determines it.
+
+    Args:
+        request: The request.
+
+    Returns:
+        A copy without description.
+    """
     first, *others = request.people
     if first.plan is None:
         return request

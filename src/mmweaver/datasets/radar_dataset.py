@@ -1,4 +1,4 @@
-"""A PyTorch data set over a labelled set, or a data set of rooms: features on the fly, or cached in memory."""
+"""PyTorch data set over a labelled set or a data set of rooms; features are computed on the fly or cached in memory."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -35,7 +35,7 @@ FEATURES = (*OF_CUBE, "points", "pose", "label")
 class RadarDataset(Dataset[dict[str, Any]]):
     """Sequences of a data set as dicts of tensors, for torch's DataLoader.
 
-    The order is that of the set; an item is the same in every worker.
+    The order is that of the set; an item is identical in every worker.
 
     Args:
         path: A labelled set (`mmweaver dataset --activities`, `mmweaver generate --texts --store`) or a data set of
@@ -43,14 +43,13 @@ class RadarDataset(Dataset[dict[str, Any]]):
         features: Any of "iq" (complex64: frame, range, doppler, antenna), "rd" (dB: frame, range, doppler), "ra" (dB:
             frame, range, azimuth), "re" (dB: frame, range, elevation), "drai" (linear: frame, 32, 32), "micro_doppler"
             (dB: window, doppler), "points" ((point, 6): frame, x, y, z, velocity, SNR), "pose" ((frame, 22, 3) metres)
-            and "label" (int).
-        split: "train", "validation", "test", another split of a data set of rooms, or None for all.
-        by: Whether "subject", "place", "room" or "sentence" of a labelled set is held out; default: what it was made
-            with.
-        cached: Whether features are kept in memory once computed.
+            and "label" (int). Default: "rd" and "label".
+        split: "train", "validation", "test", another split of a data set of rooms, or None for all. Default: all.
+        by: Property that is held out in a labelled set: "subject", "place", "room" or "sentence". Default: as built.
+        cached: Whether computed features are kept in memory. Default: False.
 
     Raises:
-        InputError: For unknown names.
+        InputError: If a name is unknown, or the set is incomplete or damaged.
     """
 
     def __init__(
@@ -82,7 +81,7 @@ class RadarDataset(Dataset[dict[str, Any]]):
 
     @property
     def label_names(self) -> tuple[str, ...]:
-        """The words of the labels, by number."""
+        """Names of the labels by number."""
         return self.set.label_names
 
     def __len__(self) -> int:
@@ -114,12 +113,26 @@ class RadarDataset(Dataset[dict[str, Any]]):
 
 
 def frame_and_points(points: PointCloud) -> np.ndarray:
-    """(point, 6) float32: frame, x, y, z in metres, radial velocity in m/s, SNR in dB."""
+    """Converts a point cloud to rows.
+
+    Args:
+        points: The cloud.
+
+    Returns:
+        Float32 (point, 6): frame, x, y, z in metres, radial velocity in m/s, SNR in dB.
+    """
     return np.concatenate([points.frame[:, None].astype(np.float32), point_table(points)], axis=1)
 
 
 def collate(items: Sequence[dict[str, Any]]) -> dict[str, torch.Tensor]:
-    """A batch for DataLoader(collate_fn=...): stacked, with clouds padded by zeros and `points_mask` (item, point)."""
+    """Collates items to a batch, for DataLoader(collate_fn=...).
+
+    Args:
+        items: Items of a `RadarDataset`.
+
+    Returns:
+        Stacked tensors; point clouds are zero-padded, with `points_mask` (item, point).
+    """
     batch: dict[str, torch.Tensor] = {}
     for name in items[0]:
         values = [item[name] for item in items]

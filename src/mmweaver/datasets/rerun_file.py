@@ -1,4 +1,4 @@
-"""A result as a recording of the viewer Rerun."""
+"""A result as a recording for the Rerun viewer."""
 
 from importlib import import_module
 from pathlib import Path
@@ -15,9 +15,10 @@ from mmweaver.signal.spectra import range_doppler_power
 
 @export_format("rerun", "Rerun recording (.rrd)", ending=".rrd")
 def write_rerun(result: StoredResult, out: Path) -> str:
-    """`result.rrd`: points, skeletons and range-Doppler maps over time; usage reports are switched off.
+    """Writes `result.rrd`: points, skeletons and range-Doppler maps over time.
 
-    Raises InputError where rerun-sdk is not installed.
+    Raises:
+        InputError: If rerun-sdk is not installed.
     """
     need("rerun", "Rerun's format", "rerun")
     rr: Any = import_module("rerun")

@@ -1,6 +1,6 @@
-"""Results as ROS 2 bags and MCAP files: point cloud, skeleton and range-Doppler map of each frame.
+"""Results as ROS 2 bags and MCAP files: point cloud, skeleton and range-Doppler map per frame.
 
-Both use ROS's axes (REP 103): x ahead, y to the left, z up, frame "radar". Time starts at 0.
+Both use the axes of ROS (REP 103): x ahead, y to the left, z up, frame "radar". Time starts at 0.
 """
 
 from pathlib import Path
@@ -22,15 +22,18 @@ POINT_FIELDS = ("x", "y", "z", "velocity", "snr_db")
 
 
 def ros_axes(points_m: Float[Array, "*shape 3"]) -> Float[Array, "*shape 3"]:
-    """From (x right, y away, z up) to (x ahead, y left, z up)."""
+    """Converts (x right, y away, z up) to (x ahead, y left, z up)."""
     return np.stack([points_m[..., 1], -points_m[..., 0], points_m[..., 2]], axis=-1)
 
 
 @export_format("ros2", "ROS 2 bag")
 def write_ros2(result: StoredResult, out: Path) -> str:
-    """A ROS 2 bag (SQLite): /radar/points (PointCloud2), /radar/skeleton_N (PoseArray), /radar/range_doppler_db.
+    """Writes a ROS 2 bag (SQLite): /radar/points (PointCloud2), /radar/skeleton_N (PoseArray), /radar/range_doppler_db.
 
-    The map is a Float32MultiArray (range, doppler) of power in dB. Raises InputError where rosbags is not installed.
+    The map is a Float32MultiArray (range, doppler) of power in dB.
+
+    Raises:
+        InputError: If rosbags is not installed.
     """
     need("export", "a ROS 2 bag", "rosbags")
     from rosbags.rosbag2 import Writer
@@ -60,9 +63,10 @@ def write_ros2(result: StoredResult, out: Path) -> str:
 
 @export_format("mcap", "MCAP, for Foxglove", ending=".mcap")
 def write_mcap(result: StoredResult, out: Path) -> str:
-    """`result.mcap` with Foxglove's schemas: /radar/points (PointCloud), /radar/skeleton (SceneUpdate).
+    """Writes `result.mcap` with Foxglove's schemas: /radar/points (PointCloud), /radar/skeleton (SceneUpdate).
 
-    Raises InputError where foxglove-sdk is not installed.
+    Raises:
+        InputError: If foxglove-sdk is not installed.
     """
     need("export", "MCAP", "foxglove")
     import foxglove
@@ -97,7 +101,15 @@ def write_mcap(result: StoredResult, out: Path) -> str:
 
 
 def packed_points(points: PointCloud, frame: int) -> Float[Array, "point 5"]:
-    """The points of a frame in ROS's axes, float32: x, y, z in metres, velocity in m/s, SNR in dB."""
+    """Points of one frame in ROS axes.
+
+    Args:
+        points: The cloud.
+        frame: Index of the frame.
+
+    Returns:
+        Float32 (point, 5): x, y, z in metres, velocity in m/s, SNR in dB.
+    """
     own = points.select(points.frame == frame)
     place = ros_axes(own.xyz_m)
     return np.concatenate([place, own.radial_velocity_mps[:, None], own.snr_db[:, None]], axis=-1).astype("<f4")
@@ -146,7 +158,7 @@ def _poses(make: dict[str, Any], header: Any, joints_m: Float[Array, "22 3"]) ->
 
 
 def _skeletons(schema: Any, result: StoredResult, index: int, when: Any) -> Any:
-    """The bones of all people as lines."""
+    """Bones of all people as lines."""
     entities = []
     for person, pose in enumerate(result.poses):
         joints_m = ros_axes(pose.joints_m[index])

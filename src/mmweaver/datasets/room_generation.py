@@ -27,7 +27,7 @@ RETRIES = 5  # attempts to place a motion in a room
 
 @dataclass(frozen=True, kw_only=True)
 class GeneratedSequence:
-    """Joints at the middle of each frame, and the signal or what `propagation.resynthesis` makes it from."""
+    """Joints at the middle of each frame, and the signal or the trace from which `propagation.resynthesis` makes it."""
 
     spec: SequenceSpec
     joints_m: np.ndarray  # (frame, 22, 3) float32
@@ -38,7 +38,7 @@ class GeneratedSequence:
 
 @dataclass(frozen=True, kw_only=True)
 class RoomGeometry:
-    """Ray-traced static paths of a room: of the true scene, and of the scene reconstructed from its photo."""
+    """Ray-traced static paths of the true scene, and of the scene reconstructed from its photo."""
 
     room: PreparedRoom
     photographed: PreparedRoom
@@ -46,9 +46,9 @@ class RoomGeometry:
 
 @dataclass(frozen=True, kw_only=True)
 class GeneratedRoom:
-    """A room with its sequences; `refused` lists the index of each sequence that does not fit, and the reason.
+    """A room with its sequences; `refused` lists index and reason of each sequence that does not fit.
 
-    With `geometry` the sequences are traced, without it they have cubes.
+    With `geometry` the sequences have traces, otherwise cubes.
     """
 
     spec: RoomSpec
@@ -68,10 +68,19 @@ def generate_room(
     board: Board = IDEAL_BOARD,
     propagation: Propagation = ALL_PATHS,
 ) -> GeneratedRoom:
-    """Generates a room and simulates all its sequences with one board; about 0.35 CPU-seconds per sequence.
+    """Generates a room and simulates all its sequences with one board; about 0.35 CPU seconds per sequence.
 
-    Signals have the paths that `propagation` says, by default all: second order and clutter, too. With `geometry_only`
-    only the geometry of first order is traced, in a third of the time; signals are synthesised from it later.
+    Args:
+        spec: The room with its sequences.
+        config: The radar.
+        num_frames: Frames per sequence.
+        geometry_only: Whether only first-order geometry is traced, in a third of the time, from which signals are
+            synthesised later. Default: False.
+        board: Board of all signals. Default: ideal.
+        propagation: Paths that are simulated. Default: all, including second order and clutter.
+
+    Returns:
+        The room.
     """
     room = make_room(spec.kind, spec.layout, spec.seed)
     true_scene = room.scene(spec.lighting)
@@ -100,7 +109,9 @@ def generate_room(
 
 
 def _geometry(simulator: Simulator, photo: RgbdPhoto) -> RoomGeometry:
-    stored = replace(photo, depth_m=photo.depth_m.astype(np.float32).astype(np.float64))  # as stored
+    stored = replace(
+        photo, depth_m=photo.depth_m.astype(np.float32).astype(np.float64)
+    )  # precision of the stored depth
     return RoomGeometry(
         room=simulator.room, photographed=RayTracedRoom(reconstruct(stored), simulator.config, propagation=FIRST_ORDER)
     )
@@ -119,16 +130,19 @@ def generate_sequence(
     """Simulates one sequence, or traces it without its signal.
 
     Args:
-        spec: What is done by whom, and the seed.
+        spec: Activity, person and seed.
         scene: The true room.
-        simulator: Of the room and the radar.
-        num_frames: Frames of the radar.
-        geometry_only: Whether it is only traced.
-        subject: Replaces the body surface (another realization).
-        noise_seed: Replaces the seed of the noise.
+        simulator: Simulator of room and radar.
+        num_frames: Number of radar frames.
+        geometry_only: Whether it is only traced. Default: False.
+        subject: Body surface of another realization. Default: the person's.
+        noise_seed: Seed of the noise. Default: that of the sequence.
+
+    Returns:
+        Joints, and the cube in sqrt(mW) or the trace.
 
     Raises:
-        InputError: Where the motion does not fit the room.
+        InputError: If the motion does not fit the room.
     """
     config, grid = simulator.config, CubeGrid.of(simulator.config, num_frames)
     pose = pose_of(spec, scene, config, num_frames)
@@ -144,7 +158,20 @@ def generate_sequence(
 
 
 def pose_of(spec: SequenceSpec, scene: Scene, config: RadarConfig, num_frames: int) -> PoseSequence:
-    """The person's motion in the scene. Raises InputError where it fits at none of a few attempts."""
+    """Composes the person's motion in a scene.
+
+    Args:
+        spec: Activity, person and seed.
+        scene: The room.
+        config: The radar.
+        num_frames: Number of radar frames.
+
+    Returns:
+        The motion.
+
+    Raises:
+        InputError: If it does not fit in five attempts.
+    """
     window = (float(config.range_m[0]), float(config.range_m[-1]))
     plan = plan_motion(spec.text, num_frames * config.frame_period_s)
     for attempt in range(RETRIES):

@@ -1,4 +1,4 @@
-"""The sequences of a data set of rooms as those of a labelled set: one reader for both."""
+"""Sequences of a data set of rooms with the interface of a labelled set, so that one reader serves both."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ from mmweaver.signal.points import point_cloud
 
 @dataclass(frozen=True, kw_only=True)
 class RoomSequences:
-    """All sequences of a set of rooms, in the order of the rooms' names; the label is the activity."""
+    """All sequences of a set of rooms, sorted by room; the label is the activity."""
 
     folder: Path
     rooms: Sequence[StoredRoom]
@@ -28,7 +28,7 @@ class RoomSequences:
 
     @property
     def config(self) -> RadarConfig:
-        """The radar of all sequences."""
+        """Radar of all sequences."""
         return self.rooms[0].config
 
     @cached_property
@@ -40,7 +40,11 @@ class RoomSequences:
 
     @cached_property
     def columns(self) -> dict[str, np.ndarray]:
-        """Along the sequences: label, label_name, text, split, subject, height, room (a name) and seed."""
+        """Label, label_name, text, split, subject, height, room (a name) and seed, (sequence,) each.
+
+        Raises:
+            InputError: If the set has an unknown activity.
+        """
         rows = self._places
 
         def column(name: str) -> np.ndarray:
@@ -64,21 +68,25 @@ class RoomSequences:
 
     @cached_property
     def joints_m(self) -> np.ndarray:
-        """(sequence, frame, 22, 3) in the radar's frame."""
+        """Joints in metres in the radar's frame, (sequence, frame, 22, 3)."""
         return np.concatenate([room.joints_m for room in self.rooms])
 
     def cube(self, index: int) -> RadarCube:
-        """The cube of one sequence in sqrt(mW), read or synthesised. Raises InputError where its file is damaged."""
+        """Reads or synthesises the cube of one sequence in sqrt(mW).
+
+        Raises:
+            InputError: If its file is damaged.
+        """
         room, own = self._places[index]
         return room.cube(own)
 
     def cloud(self, index: int) -> PointCloud:
-        """The point cloud of one sequence, detected now: such a set stores none."""
+        """Detects the point cloud of one sequence, since such sets store none."""
         return point_cloud(self.cube(index))
 
 
 def is_set(folder: Path) -> bool:
-    """Whether a folder holds a labelled set or a data set of rooms, complete or not."""
+    """Whether a folder contains a labelled set or a data set of rooms, complete or not."""
     return is_activity_set(folder) or (folder / PLAN_FILE).is_file()
 
 
@@ -86,9 +94,17 @@ LabelledData = ActivitySet | RoomSequences
 
 
 def read_labelled(folder: Path, *, device: str = "cpu") -> LabelledData:
-    """Opens a labelled set or a data set of rooms, whose signals may be synthesised on `device`.
+    """Opens a labelled set or a data set of rooms.
 
-    Raises InputError for a folder that is neither, is not complete, or is damaged.
+    Args:
+        folder: The set.
+        device: Device on which signals that are not stored are synthesised. Default: CPU.
+
+    Returns:
+        The set.
+
+    Raises:
+        InputError: If the folder is neither, is incomplete, or damaged.
     """
     if is_activity_set(folder):
         return read_activity_set(folder)
@@ -96,7 +112,14 @@ def read_labelled(folder: Path, *, device: str = "cpu") -> LabelledData:
 
 
 def plan_of(folder: Path) -> str:
-    """The text that a set follows from: plan.json, or set.json of a labelled set. Raises InputError."""
+    """Text that determines a set: plan.json, or set.json of a labelled set.
+
+    Args:
+        folder: The set.
+
+    Raises:
+        InputError: If the folder is not a set, or damaged.
+    """
     if is_activity_set(folder):
         read_activity_set(folder)  # checks all files
         return read_text(folder / SET_FILE)
@@ -104,10 +127,10 @@ def plan_of(folder: Path) -> str:
 
 
 def radar_of(folder: Path) -> RadarConfig:
-    """The radar of either kind of set. Raises InputError."""
+    """Radar of either kind of set. Raises InputError if the folder is not a set, or damaged."""
     return read_activity_set(folder).config if is_activity_set(folder) else read_radar(folder)
 
 
 def labels_of(folder: Path) -> tuple[str, ...]:
-    """The words of the labels of either kind of set, by number. Raises InputError."""
+    """Names of the labels of either kind of set, by number. Raises InputError if it is not a set, or damaged."""
     return read_activity_set(folder).label_names if is_activity_set(folder) else RoomSequences.label_names

@@ -1,6 +1,6 @@
-"""Sequences of a labelled set, or of a data set of rooms, as results, for every format.
+"""Sequences of a labelled set or a data set of rooms as results, for every export format.
 
-And the format "results": a result folder of each.
+Also defines the format "results", a result folder per sequence.
 """
 
 import json
@@ -20,7 +20,17 @@ OF_SEQUENCE = ("label_name", "split", "room", "place", "draw")
 
 
 def results_of_set(folder: Path) -> Iterator[tuple[str, StoredResult]]:
-    """Each sequence of a set with a name for its folder, its number. Raises InputError for what is no set."""
+    """Iterates over the sequences of a set.
+
+    Args:
+        folder: The set.
+
+    Yields:
+        Number of the sequence as folder name, and its result.
+
+    Raises:
+        InputError: If the folder is not a set, or damaged.
+    """
     stored = read_labelled(folder)
     columns = stored.columns
     for index in range(len(stored)):
@@ -54,7 +64,7 @@ def results_of_set(folder: Path) -> Iterator[tuple[str, StoredResult]]:
 
 @export_format("results", "a result folder, of each sequence of a set")
 def write_results(result: StoredResult, out: Path) -> str:
-    """A result folder: radar.npz, points.npz, pose.npz where there are people, radar.json, meta.json."""
+    """Writes a result folder: radar.npz, points.npz, pose.npz if there are people, radar.json, meta.json."""
     write_radar_npz(out / "radar.npz", result.cube)
     write_points_npz(out / "points.npz", result.points)
     if result.poses:

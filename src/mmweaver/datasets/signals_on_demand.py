@@ -1,14 +1,14 @@
-"""What a labelled set keeps instead of signals: rooms, motions and seeds, from which its method makes the same ones.
+"""Geometry that a labelled set stores instead of signals: rooms, motions and seeds, from which its method remakes them.
 
     OUT/sequences.zarr/geometry/     attributes: method, made_by (version), board
-        motion_m        (sequence, time, joint, axis) float32   joints densely in time, in the radar's frame
+        motion_m        (sequence, time, joint, axis) float32   densely sampled joints in the radar's frame
         motion_time_s   (time)
         seed, height_m, girth, moving_power_db   (sequence)
         room_0/         photo_rgb, photo_depth_m[, photo_class] of the first room
         room_0/view_1/  a further photo of it, with its pose
 
-The signal is that of `methods.METHODS`, the very call that `Weaver` makes, so there is no second synthesis. Its moving
-power is checked against the stored one: another version of method or weights is noticed.
+Signals come from `methods.METHODS` by the same call as in `Weaver`, so there is no second implementation. The moving
+power of each signal is compared with the stored one, which detects another version of method or weights.
 Reference: docs/decisions/data-set-plan.md.
 """
 
@@ -36,37 +36,58 @@ from mmweaver.scene.photo.posed_photo import PosedPhoto
 from mmweaver.scene.reconstruction import reconstruct
 
 GEOMETRY = "geometry"
-POWER_TOLERANCE_DB = 0.2  # processors differ by less than 0.01 dB, other people or weights by more than 1
-MAX_ROOMS = 8  # prepared at a time
+POWER_TOLERANCE_DB = 0.2  # processors differ by less than 0.01 dB, other people or weights by more than 1 dB
+MAX_ROOMS = 8  # prepared rooms in the cache
 FARTHEST_M = 1000.0
 
 
 def moving_power_db(cube: RadarCube) -> float:
-    """Power of what differs from the mean over frames, mean over cells, dBm."""
+    """Mean power over cells of the deviation from the mean over frames.
+
+    Args:
+        cube: The cube.
+
+    Returns:
+        Power in dBm.
+    """
     values = cube.values - cube.values.mean(axis=0, keepdims=True)
     power = float(np.mean(np.abs(values).astype(np.float64) ** 2)) * cube.scale**2
     return float(10 * np.log10(max(power, 1e-300)))
 
 
 def storable(pose: PoseSequence) -> PoseSequence:
-    """The motion with joints as they are stored, so that a signal made of it can be made again."""
+    """Rounds joints to their stored precision, so that the signal can be reproduced from the stored motion."""
     return replace(pose, joints_m=pose.joints_m.astype(np.float32).astype(np.float64))
 
 
 @dataclass(frozen=True, kw_only=True)
 class SetGeometry:
-    """All that signals are made from; `sequences` has a row a sequence: seed, height_m, girth, moving_power_db."""
+    """Everything from which the signals of a set are made.
+
+    Attributes:
+        method: Name of the method.
+        board: Board of all sequences.
+        rooms: Photo and further views of each room.
+        time_s: Times of all motions in seconds, (time,).
+        sequences: seed, height_m, girth and moving_power_db, (sequence,) each.
+        motions_m: Joints of one sequence after the other, float32 (time, joint, 3).
+    """
 
     method: str
     board: Board
     rooms: Sequence[tuple[RgbdPhoto, Sequence[PosedPhoto]]]
-    time_s: np.ndarray  # (time,) of all motions
+    time_s: np.ndarray
     sequences: dict[str, np.ndarray]
-    motions_m: Iterable[np.ndarray]  # (time, joint, 3) float32 of one sequence after the other
+    motions_m: Iterable[np.ndarray]
 
 
 def write_set_geometry(store: Any, geometry: SetGeometry) -> None:
-    """Puts it below the group of a labelled set."""
+    """Writes geometry into the Zarr group of a labelled set.
+
+    Args:
+        store: The group.
+        geometry: The geometry.
+    """
     from zarr.codecs import BloscCodec
 
     group = store.create_group(GEOMETRY)
@@ -92,10 +113,20 @@ def write_set_geometry(store: Any, geometry: SetGeometry) -> None:
 
 
 class SignalsOnDemand:
-    """Makes the signals of a stored set. Rooms are prepared when first asked for, by every worker for itself."""
+    """Synthesises the signals of a stored set. Rooms are prepared at first use, separately in every worker."""
 
     def __init__(self, files: CheckedFolder, below: str, config: RadarConfig, num_frames: int):
-        """`below`: where the group of geometry lies in the folder, ending in "/". Raises InputError for damage."""
+        """Reads the geometry except for motions and photos.
+
+        Args:
+            files: Folder of the set.
+            below: Path of the geometry group in the folder, ending in "/".
+            config: The radar.
+            num_frames: Frames per sequence.
+
+        Raises:
+            InputError: If it is damaged.
+        """
         self.files, self.below, self.config, self.num_frames = files, below, config, num_frames
         each = ("sequence",)
         self._group = group = open_zarr(files.folder / below)
@@ -114,7 +145,19 @@ class SignalsOnDemand:
 
     @single_precision()
     def cube(self, index: int, *, room: int, subject: int) -> RadarCube:
-        """The signal of one sequence, in sqrt(mW). Raises InputError where this version makes another one."""
+        """Synthesises the signal of one sequence.
+
+        Args:
+            index: Index of the sequence.
+            room: Index of its room.
+            subject: Index of its person.
+
+        Returns:
+            Cube in sqrt(mW).
+
+        Raises:
+            InputError: If this version makes a different signal, or the geometry is damaged.
+        """
         scene, method = self._prepared(room)
         pose = self.motion(index, subject)
         board: dict[str, Any] = {} if self.board.is_ideal else {"board": self.board}
@@ -136,7 +179,18 @@ class SignalsOnDemand:
         return cube
 
     def motion(self, index: int, subject: int) -> PoseSequence:
-        """The person's joints densely in time."""
+        """Reads the densely sampled motion of one sequence.
+
+        Args:
+            index: Index of the sequence.
+            subject: Index of its person.
+
+        Returns:
+            The motion.
+
+        Raises:
+            InputError: If it is damaged.
+        """
         shape = (len(self._time_s), len(JOINT_NAMES), 3)
         near = {"low": -FARTHEST_M, "high": FARTHEST_M}
         joints_m = stored_sequence(self.files, self._group, self.below, "motion_m", index, shape, **near)
@@ -149,7 +203,7 @@ class SignalsOnDemand:
         )
 
     def _prepared(self, room: int) -> tuple[Scene, Method]:
-        """The room and a method of its own, which keeps what it prepared of it."""
+        """The room and its own instance of the method, which caches what it prepares."""
         if room not in self._rooms:
             if self.method not in METHODS:
                 raise InputError(f"{self.files.folder} is of method {self.method!r}, which is not installed here")

@@ -1,4 +1,4 @@
-"""Radar tensors as other projects store them: HuPR, RF-Genesis, mmMesh, and dynamic range-angle images (DRAI)."""
+"""Radar tensors in the layouts of other projects: HuPR, RF-Genesis, mmMesh, dynamic range-angle images (DRAI)."""
 
 import json
 from pathlib import Path
@@ -35,9 +35,20 @@ HUPR_JOINTS = (
 
 
 def write_hupr_pair(horizontal: StoredResult, vertical: StoredResult, out: Path) -> str:
-    """`hori/` and `vert/` of two radars of one scene, the second rolled by 90 degrees; both as in `write_hupr`.
+    """Writes `hori/` and `vert/` of two radars of one scene, the second rolled by 90 degrees, as in `write_hupr`.
 
-    The joints are in the horizontal radar's frame. Raises InputError where the radars are not so, too.
+    The joints are in the horizontal radar's frame.
+
+    Args:
+        horizontal: Result of the first radar.
+        vertical: Result of the second radar.
+        out: The folder.
+
+    Returns:
+        Description of what was written.
+
+    Raises:
+        InputError: If the radars are not rolled relative to each other, or as in `write_hupr`.
     """
     rolls_deg = [float((one.meta.get("radar_pose") or {}).get("roll_deg", 0.0)) for one in (horizontal, vertical)]
     if abs(abs(rolls_deg[1] - rolls_deg[0]) - 90) > 20:
@@ -52,14 +63,16 @@ def write_hupr_pair(horizontal: StoredResult, vertical: StoredResult, out: Path)
 
 @export_format("hupr", "HuPR's range-Doppler-angle arrays", needs_samples=True, write_pair=write_hupr_pair)
 def write_hupr(result: StoredResult, out: Path) -> str:
-    """`hori/%09d.npy`, complex128 (16 Doppler, 64 range from far to near, 64 azimuth, 8 elevation), and the joints.
+    """Writes `hori/%09d.npy`, complex128 (16 Doppler, 64 range from far to near, 64 azimuth, 8 elevation), and joints.
 
-    As in HuPR's preprocessing: no windows, the mean over the loops removed, no TDM compensation, the elevation FFT at
-    azimuth channels 2 to 5 alone, both angle axes reversed. `joints_m.npy` (frame, person, 14, 3) has HuPR's joints in
-    the radar's frame: its own labels are pixels of a camera that a result does not have. Raises InputError where the
-    radar has not 3 transmitters, 4 receivers, 64 range bins and at least 16 loops.
+    As in HuPR's preprocessing: no windows, mean over the loops removed, no TDM compensation, elevation FFT at azimuth
+    channels 2 to 5 only, both angle axes reversed. `joints_m.npy` (frame, person, 14, 3) has HuPR's joints in the
+    radar's frame, since HuPR's own labels are pixels of a camera that a result lacks.
 
     Reference: Lee et al., HuPR: A Benchmark for Human Pose Estimation Using Millimeter Wave Radar (WACV 2023).
+
+    Raises:
+        InputError: If the radar does not have 3 transmitters, 4 receivers, 64 range bins and at least 16 loops.
     """
     count = _write_hupr_frames(result, out / "hori")
     if result.poses:
@@ -73,7 +86,7 @@ def write_hupr(result: StoredResult, out: Path) -> str:
 
 
 def _write_hupr_frames(result: StoredResult, folder: Path) -> int:
-    """Writes one radar's frames and returns how many there are."""
+    """Writes the frames of one radar and returns their number."""
     adc = result.adc
     _check_hupr(adc.config)
     folder.mkdir(parents=True)
@@ -85,7 +98,15 @@ def _write_hupr_frames(result: StoredResult, folder: Path) -> int:
 def hupr_frame(
     samples: Complex[Array, "loop tx rx sample"], config: RadarConfig
 ) -> Complex[Array, "doppler range azimuth elevation"]:
-    """One frame as HuPR stores it; see `write_hupr`."""
+    """Converts one frame to HuPR's layout, see `write_hupr`.
+
+    Args:
+        samples: ADC samples, (loop, tx, rx, sample).
+        config: The radar.
+
+    Returns:
+        Complex (16 Doppler, 64 range, 64 azimuth, 8 elevation).
+    """
     kept, num_range = HUPR_SHAPE[:2]
     moving = samples - samples.mean(axis=0)
     spectrum = np.fft.fft(np.fft.fft(moving.astype(complex), axis=-1), axis=0)
@@ -103,10 +124,10 @@ def hupr_frame(
 
 @export_format("rf_genesis", "RF-Genesis' radar frames", needs_samples=True)
 def write_rf_genesis(result: StoredResult, out: Path) -> str:
-    """`radar_frames.npy`, complex128 (frame, tx, rx, chirp, sample), with `TI1843_config.json` in RF-Genesis' units.
+    """Writes `radar_frames.npy`, complex128 (frame, tx, rx, chirp, sample), and `TI1843_config.json`.
 
-    RF-Genesis lets all transmitters send at once; these samples keep the TDM timing of the radar. Transmitters, in the
-    samples and in `tx_loc`, are in firing order, which is the order of RF-Genesis' own AWR1843.
+    RF-Genesis fires all transmitters simultaneously; these samples keep the TDM timing of the radar. Transmitters, in
+    the samples and in `tx_loc`, are in firing order, which is the order of RF-Genesis' own AWR1843.
 
     Reference: Chen and Zhang, RF Genesis (SenSys 2023), as of its public repository.
     """
@@ -117,7 +138,14 @@ def write_rf_genesis(result: StoredResult, out: Path) -> str:
 
 
 def rf_genesis_settings(config: RadarConfig) -> dict[str, object]:
-    """RF-Genesis' settings: MHz/us, microseconds, ksps; antenna places in half wavelengths."""
+    """Converts a radar to RF-Genesis' settings.
+
+    Args:
+        config: The radar.
+
+    Returns:
+        Settings in MHz/us, microseconds and ksps; antenna positions (x, z, y) in half wavelengths.
+    """
     half_m = config.wavelength_m / 2
     places = {
         name: [[round(float(value) / half_m, 4) for value in (x, z, y)] for x, y, z in positions]
@@ -149,10 +177,10 @@ def rf_genesis_settings(config: RadarConfig) -> dict[str, object]:
 
 @export_format("mmmesh", "mmMesh's point frames")
 def write_mmmesh(result: StoredResult, out: Path) -> str:
-    """`points/%06d.npy`, float64 (point, 6): x, y, z in metres, velocity in m/s, energy, range in metres.
+    """Writes `points/%06d.npy`, float64 (point, 6): x, y, z in metres, velocity in m/s, energy, range in metres.
 
-    The energy is the signal-to-noise ratio as a power ratio. Where the result holds samples, `adc/%06d.npy` has them
-    as complex64 (tx, rx, loop, sample), transmitters in firing order.
+    The energy is the SNR as a power ratio. Raw samples, if present, are written to `adc/%06d.npy` as complex64 (tx, rx,
+    loop, sample), transmitters in firing order.
 
     Reference: Xue et al., mmMesh (MobiSys 2021), as of its public repository.
     """
@@ -174,9 +202,10 @@ def write_mmmesh(result: StoredResult, out: Path) -> str:
 
 @export_format("drai", "dynamic range-angle images, 32 x 32")
 def write_drai(result: StoredResult, out: Path) -> str:
-    """`y_NAME_e0_u0_p0_s0.npy`: dynamic range-angle images, float32 (frame, 32 range, 32 azimuth), linear power.
+    """Writes `y_NAME_e0_u0_p0_s0.npy`: dynamic range-angle images, float32 (frame, 32 range, 32 azimuth), linear power.
 
-    The mean chirp is removed; azimuths go evenly from -60 to 60 degrees, ranges from the nearest bin to the farthest.
+    The mean chirp is removed; azimuths are equidistant from -60 to 60 degrees, ranges from the nearest to the farthest
+    bin.
     """
     name = "".join(one if one.isalnum() else "-" for one in result.text)[:60].strip("-") or "recording"
     images = dynamic_range_angle(result.cube)
@@ -185,7 +214,7 @@ def write_drai(result: StoredResult, out: Path) -> str:
 
 
 def _firing_order(adc: AdcCube) -> np.ndarray:
-    """(frame, loop, slot, rx, sample); those of a transmit code are in it already."""
+    """Samples (frame, loop, slot, rx, sample) in firing order; slots of a coded radar are already."""
     return adc.samples if adc.config.is_coded else adc.samples[:, :, list(adc.config.tx_order)]
 
 

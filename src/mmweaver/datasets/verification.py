@@ -1,7 +1,7 @@
-"""Whether what mmweaver wrote is still as it was written, and which command makes what is not.
+"""Checks whether files written by mmweaver are intact, and names the command that regenerates damaged ones.
 
 verify("walk/") -> Verification: a result folder, a folder of --texts, of rooms or of exports, a stream, a data set, a
-labelled set of activities, a run of mmweaver train, any file next to a SHA256SUMS, or one with checksums of its own
+labelled set of activities, a run of mmweaver train, any file listed in a SHA256SUMS, or one with its own checksums
 (.mmw, .mmwl, .npz, .zip, weights)
 """
 
@@ -25,26 +25,27 @@ from mmweaver.io.stream_folder import LIST, PARTS, is_stream, listed_parts
 REQUEST = "request.toml"
 BATCH_LIST = "sequences.json"
 CHECKPOINT = "checkpoint.pt"
-COMMANDS_OF_FOLDERS = ("generate", "process", "rooms")  # what a request.toml of a folder of results may name
+COMMANDS_OF_FOLDERS = ("generate", "process", "rooms")  # valid commands in the request.toml of a result folder
 
 
 @dataclass
 class Verification:
-    """What was checked at a path, and what is damaged."""
+    """Result of a check: what was checked and what is damaged."""
 
     path: Path
     kind: str
     checked: int = 0  # files
     damaged: list[Damage] = field(default_factory=list)
-    commands: list[str] = field(default_factory=list)  # that make it anew
+    commands: list[str] = field(default_factory=list)  # commands that regenerate it
     unchecked: list[str] = field(default_factory=list)  # folders and files without checksums
 
     @property
     def is_sound(self) -> bool:
+        """Whether nothing is damaged."""
         return not self.damaged
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """The result as plain JSON values."""
         return {
             "path": str(self.path),
             "kind": self.kind,
@@ -55,14 +56,29 @@ class Verification:
         }
 
     def blame(self, damaged: list[Damage], command: str) -> None:
-        """Adds what is damaged and the command that makes it anew."""
+        """Records damage and the command that repairs it.
+
+        Args:
+            damaged: Damaged files; may be empty.
+            command: Command that regenerates them.
+        """
         self.damaged += damaged
         if damaged and command not in self.commands:
             self.commands.append(command)
 
 
 def verify(path: Path | str) -> Verification:
-    """Checks a file or folder. Raises InputError where there is nothing that mmweaver wrote with checksums."""
+    """Checks a file or folder against its checksums.
+
+    Args:
+        path: File or folder written by mmweaver.
+
+    Returns:
+        What was checked and what is damaged.
+
+    Raises:
+        InputError: If the path has no checksums.
+    """
     path = Path(path)
     if path.is_dir():
         return _verified_folder(path)
@@ -135,7 +151,7 @@ def _verified_activity_set(folder: Path) -> Verification:
     is_known = made_by.startswith("mmweaver dataset ")
     again = made_by if is_known else f"mmweaver dataset {place} --activities, with the options it was made with"
     if is_known and not (folder / STORE).is_dir():
-        found.blame([Damage(file=folder / STORE, what="is missing")], again)  # it goes on where it stopped
+        found.blame([Damage(file=folder / STORE, what="is missing")], again)  # resumes where it stopped
         return found
     again = f"rm -r {shlex.quote(str(folder / STORE)) if is_known else place}, then {again}"
     if (folder / SUMS_FILE).is_file():
@@ -168,7 +184,7 @@ def _verified_batch(folder: Path, below: list[Path]) -> Verification:
 
 
 def _is_of(entry: dict[str, Any], folder: Path) -> bool:
-    """Whether an entry of the list says of a folder what that says itself."""
+    """Whether an entry of the list agrees with the folder's own meta.json."""
     if not (folder / "meta.json").is_file():
         return True
     meta = read_json(folder / "meta.json")
@@ -205,7 +221,7 @@ def _verified_stream(folder: Path) -> Verification:
     again = "make the stream anew in another folder: whole parts that are there stay readable"
     _check_sums(found, folder, again)
     parts = set((folder / PARTS).glob("[0-9]*")) if (folder / PARTS).is_dir() else set()
-    with contextlib.suppress(InputError):  # where the list is missing the checksums say so
+    with contextlib.suppress(InputError):  # a missing list is detected by the checksums
         parts |= set(listed_parts(folder))
     for part in sorted(parts):
         if part.is_dir():
@@ -216,7 +232,7 @@ def _verified_stream(folder: Path) -> Verification:
 
 
 def _verified_alone(file: Path) -> Verification:
-    """A file with checksums of its own: CRC-32 of each chunk of .mmw and .mmwl, and of each entry of a zip."""
+    """Checks a file with its own checksums: CRC-32 of each chunk of .mmw and .mmwl, or of each entry of a zip."""
     found = Verification(path=file, kind=file.suffix, checked=1)
     if not OWN_CHECKSUMS[file.suffix](file):
         again = f"the command that wrote {shlex.quote(str(file))}, with --overwrite"
@@ -271,7 +287,7 @@ def _lists(folder: Path, name: str) -> bool:
 
 
 def _command_of_results(folder: Path) -> str:
-    """The command that makes a result folder, or a folder of rooms, anew."""
+    """Command that regenerates a result folder, or a folder of rooms."""
     request, place = folder / REQUEST, shlex.quote(str(folder))
     try:
         command = read_toml(request)["command"]
@@ -294,6 +310,6 @@ def _command_of_run(folder: Path) -> str:
 def _command_of_weights(file: Path) -> str:
     if file.parent.name == "weights" and file.parent.parent.name == "mmweaver":
         return "pip install --force-reinstall mmweaver"
-    if file.name == "best.safetensors":  # written at a validation before the checkpoint: start over
+    if file.name == "best.safetensors":  # cannot be restored from the checkpoint, so start over
         return f"rm {shlex.quote(str(file.parent / CHECKPOINT))}, then {_command_of_run(file.parent)}"
     return _command_of_run(file.parent)

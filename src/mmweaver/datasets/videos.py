@@ -1,4 +1,4 @@
-"""Results as MP4 and WebM: the animation of the result folder, or of the maps alone where it has none."""
+"""Results as MP4 and WebM: the animation of the result folder, or of the maps if it has none."""
 
 from fractions import Fraction
 from pathlib import Path
@@ -18,18 +18,29 @@ CODECS = {"mp4": ("libx264", {"crf": "23", "preset": "medium"}), "webm": ("libvp
 
 @export_format("mp4", "video, H.264", ending=".mp4")
 def write_mp4(result: StoredResult, out: Path) -> str:
-    """`result.mp4` (H.264)."""
+    """Writes `result.mp4` (H.264). Raises InputError if PyAV is not installed."""
     return write_video(result, out / "result.mp4")
 
 
 @export_format("webm", "video, VP9", ending=".webm")
 def write_webm(result: StoredResult, out: Path) -> str:
-    """`result.webm` (VP9)."""
+    """Writes `result.webm` (VP9). Raises InputError if PyAV is not installed."""
     return write_video(result, out / "result.webm")
 
 
 def write_video(result: StoredResult, file: Path) -> str:
-    """Encodes the pictures of preview.gif in real time. Raises InputError where PyAV is not installed."""
+    """Encodes the pictures of preview.gif in real time.
+
+    Args:
+        result: The result.
+        file: Output file, .mp4 or .webm.
+
+    Returns:
+        Description of what was written.
+
+    Raises:
+        InputError: If PyAV is not installed.
+    """
     need("export", "a video", "av")
     import av
 
@@ -49,7 +60,7 @@ def write_video(result: StoredResult, file: Path) -> str:
 
 
 def _pictures(result: StoredResult) -> list[np.ndarray]:
-    """(height, width, 3) uint8 each."""
+    """Pictures of the animation, (height, width, 3) uint8 each."""
     animation = result.folder / "preview.gif"
     if animation.is_file():
         return read_animation(animation)

@@ -1,4 +1,4 @@
-"""Arrays of a data set's Zarr groups: every chunk is written, with a CRC-32C."""
+"""Arrays in the Zarr groups of a data set: every chunk is written, with a CRC-32C."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
@@ -24,13 +24,13 @@ UNITS = {
     "height": "m",
 }
 IQ_DIMENSIONS = ("sequence", "frame_time", "range", "radial_velocity", "antenna", "part")
-SHARD_BYTES = 32 << 20  # of signals in one file, if a sequence is not larger: 500 sequences are some 30 files
+SHARD_BYTES = 32 << 20  # maximum size of a signal file unless a sequence is larger: about 30 files per 500 sequences
 
-_PEAK = 16384.0  # of the largest float16 of a sequence
+_PEAK = 16384.0  # largest float16 value of a sequence
 
 
 def zarr_module() -> Any:
-    """The zarr module, imported lazily. Raises InputError where it is not installed."""
+    """The zarr module, imported lazily. Raises InputError if it is not installed."""
     need("dataset", "a data set", "zarr")
     import zarr
 
@@ -38,10 +38,16 @@ def zarr_module() -> Any:
 
 
 def put_array(group: Any, name: str, values: np.ndarray, dimensions: tuple[str, ...], *, packing: Any = None) -> None:
-    """Writes one array as one chunk.
+    """Writes an array as one chunk.
 
-    `packing`: the codec of its bytes (default Zstandard). Chunks of nothing but zeros are written too, so that a file
-    that is missing is damage, which Zarr itself takes for zeros.
+    Chunks of zeros are written too, so that a missing file is detected as damage; Zarr itself would read zeros.
+
+    Args:
+        group: Zarr group.
+        name: Name of the array.
+        values: The array.
+        dimensions: Names of its dimensions.
+        packing: Codec of its bytes. Default: Zstandard.
     """
     from zarr.codecs import Crc32cCodec, ZstdCodec
 
@@ -76,9 +82,16 @@ def put_sequences(
     *,
     packing: Sequence[Any] = (),
 ) -> None:
-    """Writes an array of `shape` (sequence, ...) and number type `kind`, one sequence after another.
+    """Writes an array one sequence after another; each is a chunk, in shards of at most SHARD_BYTES.
 
-    A sequence is a chunk, packed by the codecs `packing`; chunks are in shards of at most SHARD_BYTES.
+    Args:
+        group: Zarr group.
+        name: Name of the array.
+        kind: Dtype.
+        shape: (sequence, ...).
+        dimensions: Names of the dimensions.
+        sequences: Values of each sequence.
+        packing: Codecs of the chunks. Default: none.
     """
     from zarr.codecs import Crc32cCodec
 
@@ -105,18 +118,29 @@ def put_sequences(
 
 
 def write_iq(group: Any, kind: str, shape: tuple[int, ...], sequences: Iterable[np.ndarray]) -> None:
-    """Writes the signals of `shape` (sequence, frame, range, doppler, antenna, part) as float16 or float32.
+    """Writes signals without compression, so that the size of a sequence carries no information on its content.
 
-    Without compression, so that the size of a sequence says nothing of its content.
+    Args:
+        group: Zarr group.
+        kind: "float16" or "float32".
+        shape: (sequence, frame, range, doppler, antenna, part).
+        sequences: Values of each sequence.
     """
     put_sequences(group, "iq", kind, shape, IQ_DIMENSIONS, sequences)
     group["iq"].attrs["part_names"] = ["in-phase", "quadrature"]
 
 
 def packed_iq(cube: RadarCube, kind: str = "float16") -> tuple[np.ndarray, float]:
-    """(frame, range, doppler, antenna, part) in float16 or float32, and the factor to sqrt(mW).
+    """Packs a cube for storage.
 
-    The largest float16 is 16384: the error is below 5e-4 of a value down to 1e-9 of the peak's power.
+    The largest float16 is 16384: the error is below 5e-4 of a value down to 1e-9 of the peak power.
+
+    Args:
+        cube: The cube.
+        kind: "float16" or "float32". Default: "float16".
+
+    Returns:
+        Values (frame, range, doppler, antenna, part), and the factor to sqrt(mW).
     """
     scale = cube.scale if np.isfinite(cube.scale) else 1.0
     pairs = np.ascontiguousarray(cube.values).view(np.float32).reshape(*cube.values.shape, 2)
@@ -127,25 +151,31 @@ def packed_iq(cube: RadarCube, kind: str = "float16") -> tuple[np.ndarray, float
 
 
 def consolidate(store: Path) -> None:
-    """Collects the metadata of all arrays in the group's own, so that xarray opens it without a word or a search."""
+    """Collects the metadata of all arrays in that of the group, so that xarray opens it without search or warning."""
     import warnings
 
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # version 3 of Zarr has no chapter on it yet; readers without it ignore it
+        warnings.simplefilter("ignore")  # not yet part of the Zarr 3 specification; other readers ignore it
         zarr_module().consolidate_metadata(store)
 
 
 def put_texts(group: Any, name: str, texts: Sequence[str]) -> None:
-    """Writes one text for each sequence."""
+    """Writes one text per sequence."""
     array = group.create_array(name, shape=(len(texts),), dtype="string", dimension_names=("sequence",))
     array[...] = np.asarray(texts, dtype=object)
 
 
-FARTHEST_M = 1000.0  # of depths; what is beyond is damage
+FARTHEST_M = 1000.0  # largest depth; anything beyond indicates damage
 
 
 def put_photo(group: Any, photo: RgbdPhoto, depth_type: str = "float32") -> None:
-    """Writes a photo with its camera; `depth_type`: that of the stored depth in metres."""
+    """Writes a photo with its camera.
+
+    Args:
+        group: Zarr group.
+        photo: The photo.
+        depth_type: Dtype of the stored depth in metres. Default: float32.
+    """
     put_array(group, "photo_rgb", photo.rgb, ("row", "column", "colour"))
     put_array(group, "photo_depth_m", photo.depth_m.astype(depth_type), ("row", "column"))
     if photo.classes is not None:
@@ -156,7 +186,17 @@ def put_photo(group: Any, photo: RgbdPhoto, depth_type: str = "float32") -> None
 
 
 def stored_photo(group: ZarrFolder) -> RgbdPhoto:
-    """The photo of a group. Raises InputError where it is damaged."""
+    """Reads the photo of a group.
+
+    Args:
+        group: The group.
+
+    Returns:
+        The photo.
+
+    Raises:
+        InputError: If it is damaged.
+    """
     rgb = group.numbers("photo_rgb", ("row", "column", 3), kinds="u", high=255).astype(np.uint8)
     depth_m = group.numbers("photo_depth_m", ("row", "column"), kinds="f", low=0, high=FARTHEST_M, nan=True)
     names, classes = group.words("class_names"), None

@@ -1,1 +1,1 @@
-"""Scores that training, comparisons and recognisers report."""
+"""Scores, comparisons of signals and board calibration."""

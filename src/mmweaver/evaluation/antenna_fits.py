@@ -1,9 +1,9 @@
-"""Gain and phase of each antenna pair, from static cells of an unknown room.
+"""Gain and phase of each antenna pair from static cells of an unknown room.
 
-A strong cell is mostly one plane wave, so its phases over the antennas are those of a direction plus the board's. Over
-many cells of many directions the board's remain: directions and errors are found in turn, each in closed form. What is
-linear in an antenna's place is a direction too, so it cannot be seen: neither a turned board nor the offset of a row of
-antennas above another.
+A strong cell is mostly one plane wave, so its phases over the antennas are those of a direction plus those of the
+board. Over many cells with many directions only the board's remain: directions and errors are estimated alternately,
+each in closed form. A phase that is linear in antenna position is indistinguishable from a direction, so neither a
+rotated board nor the offset between two rows of antennas can be observed.
 """
 
 from collections.abc import Sequence
@@ -15,16 +15,26 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.evaluation.finding import Finding, signal_fit
 from mmweaver.evaluation.signal_evidence import CannotSeeError, SignalEvidence
 
-NEAREST_M = 0.6  # leakage and its skirt lie nearer
-OVER_NOISE = 100.0  # of a strong cell
+NEAREST_M = 0.6  # excludes leakage and its skirt
+OVER_NOISE = 100.0  # minimum power of a strong cell relative to noise
 MIN_CELLS, BLOCKS, ROUNDS = 16, 8, 30
 SINES, HEIGHTS = np.linspace(-0.85, 0.85, 69), np.linspace(-0.4, 0.4, 13)
-SEEN_OVER_ERROR = 2.0  # rms of what was found over that of its error
+SEEN_OVER_ERROR = 2.0  # minimum ratio of the rms estimate to its rms error
 
 
 @signal_fit("antenna gains and phases")
 def fit_channels(evidence: Sequence[SignalEvidence]) -> Finding:
-    """Gain and phase of each antenna pair over their means."""
+    """Estimates gain and phase of each antenna pair relative to their means.
+
+    Args:
+        evidence: Recordings of one radar.
+
+    Returns:
+        `channel_gain_db` and `channel_phase_deg`, (tx, rx), with standard errors; zero where they are not significant.
+
+    Raises:
+        CannotSeeError: For coded radars, too few strong static cells, or insignificant errors.
+    """
     config = evidence[0].cube.config
     if config.is_coded:
         raise CannotSeeError("simultaneous transmitters do not show them separately")
@@ -60,7 +70,7 @@ def fit_channels(evidence: Sequence[SignalEvidence]) -> Finding:
 
 
 def _strong_cells(evidence: SignalEvidence) -> np.ndarray:
-    """Values (cell, antenna) of strong static range bins, mean over the frames, in order of range."""
+    """Strong static range bins (cell, antenna), averaged over frames, in order of range."""
     still = evidence.mean_still
     power = (np.abs(still) ** 2).mean(axis=1)
     limit = OVER_NOISE * float(np.median(evidence.noise)) if evidence.has_doppler else float(np.median(power))
@@ -68,18 +78,18 @@ def _strong_cells(evidence: SignalEvidence) -> np.ndarray:
 
 
 def _places(config: RadarConfig) -> np.ndarray:
-    """x and z (antenna, 2) in wavelengths."""
+    """x and z of the antennas in wavelengths, (antenna, 2)."""
     return config.antenna_position_m[:, [0, 2]] / config.wavelength_m
 
 
 def _free_phases(config: RadarConfig) -> int:
-    """How many phases of antennas no direction can explain."""
+    """Number of antenna phases that no direction can explain."""
     places = _places(config)
     return len(places) - int(np.linalg.matrix_rank(np.column_stack([np.ones(len(places)), places]), tol=0.05))
 
 
 def _steering(config: RadarConfig) -> np.ndarray:
-    """Phases (direction, antenna) of plane waves."""
+    """Steering vectors (direction, antenna) of plane waves."""
     places = _places(config)
     heights = HEIGHTS if np.ptp(places[:, 1]) > 0.05 else np.zeros(1)
     sines = SINES if np.ptp(places[:, 0]) > 0.05 else np.zeros(1)
@@ -88,7 +98,7 @@ def _steering(config: RadarConfig) -> np.ndarray:
 
 
 def _channel_errors(cells: np.ndarray, steering: np.ndarray, config: RadarConfig) -> tuple[np.ndarray, float]:
-    """Factors (antenna,) of geometric mean 1 without what is linear in place, and the share of the best plane waves."""
+    """Factors (antenna,) with geometric mean 1 and no linear phase, and the median share of the best plane wave."""
     values = cells / np.sqrt((np.abs(cells) ** 2).mean(axis=1, keepdims=True))
     factor = np.ones(values.shape[1], complex)
     share = np.zeros(len(values))
@@ -98,7 +108,7 @@ def _channel_errors(cells: np.ndarray, steering: np.ndarray, config: RadarConfig
         best = np.abs(beams).argmax(axis=1)
         wave = np.take_along_axis(beams, best[:, None], axis=1) * steering[best]
         share = (np.abs(wave) ** 2).mean(axis=1) / (np.abs(corrected) ** 2).mean(axis=1)
-        weight = (1 / (1 - share + 0.05))[:, None]  # over the power of what is not that wave
+        weight = (1 / (1 - share + 0.05))[:, None]  # inverse residual power
         factor = (weight * values * wave.conj()).sum(axis=0) / (weight * np.abs(wave) ** 2).sum(axis=0)
         factor = _remove_direction(factor, config)
     return factor, float(np.median(share))
@@ -107,10 +117,10 @@ def _channel_errors(cells: np.ndarray, steering: np.ndarray, config: RadarConfig
 def _standard_errors(
     found: np.ndarray, cells: np.ndarray, steering: np.ndarray, config: RadarConfig
 ) -> tuple[float, float]:
-    """Of gains in dB and phases in degrees, rms over the antennas: a jackknife over blocks of ranges.
+    """Standard errors of gains in dB and phases in degrees, rms over antennas, by a jackknife over blocks of ranges.
 
-    Other paths in the cells of one room are most of it, so more frames do not make it smaller; more rooms do. Few
-    blocks estimate their own spread roughly, which Student's t allows for: two thirds of errors are smaller.
+    They are dominated by multipath in the cells of one room, so more rooms reduce them but more frames do not.
+    Student's t accounts for the small number of blocks, at 68 % coverage.
     """
     kept_cells = [np.arange(len(cells)) * BLOCKS // len(cells) != block for block in range(BLOCKS)]
     change = np.stack([_channel_errors(cells[kept], steering, config)[0] for kept in kept_cells]) / found
@@ -121,7 +131,7 @@ def _standard_errors(
 
 
 def _remove_direction(factor: np.ndarray, config: RadarConfig) -> np.ndarray:
-    """Factors of geometric mean 1, minus the phase that is linear in an antenna's place."""
+    """Normalises factors to geometric mean 1 and removes the phase that is linear in antenna position."""
     design = np.column_stack([np.ones(len(factor)), _places(config)])
     phase = np.angle(factor * np.exp(-1j * np.angle(factor.sum())))
     phase = phase - design @ np.linalg.lstsq(design, phase, rcond=0.05)[0]

@@ -1,4 +1,4 @@
-"""The board that made a background recording, so that the person in it has the errors of the recorded clutter."""
+"""Board of a background recording, so that a person added to it has the same hardware errors as the clutter."""
 
 from dataclasses import replace
 
@@ -9,13 +9,24 @@ from mmweaver.core.records import RadarCube
 
 
 class BackgroundBoard:
-    """The board of the latest recording; its leakage and noise are in the recording and left out."""
+    """Cached board of the latest recording, without leakage and noise, which the recording already contains."""
 
     def __init__(self) -> None:
         self._latest: tuple[RadarCube, Board] | None = None
 
     def of(self, recording: RadarCube, known: Board | None = None) -> Board:
-        """The board that is `known`, or as far as the recording shows it, fitted once for each. Raises InputError."""
+        """Returns the board of a recording, fitted once per recording.
+
+        Args:
+            recording: Cube of the background.
+            known: Board if it is known. Default: fitted to the recording.
+
+        Returns:
+            The board without leakage and noise figure.
+
+        Raises:
+            InputError: If the recording cannot be calibrated.
+        """
         if known is not None:
             return _remove_noise(known)
         latest = self._latest

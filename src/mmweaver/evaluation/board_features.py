@@ -1,4 +1,4 @@
-"""Features of the board: noise and the IF filter's response, leakage from transmitter to receiver, chirps, drift."""
+"""Features of the board: noise and IF response, TX-RX leakage, first chirp, drift."""
 
 import numpy as np
 
@@ -7,21 +7,24 @@ from mmweaver.evaluation.signal_evidence import CannotSeeError, SignalEvidence, 
 from mmweaver.signal.windows import hann, noise_share
 
 LAST_SHARE, NEAR_BINS, MIDDLE = 0.05, slice(2, 7), (0.3, 0.8)
-LEAKAGE_M = 0.15  # cables and radome put the leakage of a board up to here
+LEAKAGE_M = 0.15  # largest apparent range of leakage, through cables and radome
 SKIRT_OVER_NOISE, COVERED_OVER_LOWEST = 2.0, 10.0
-CHIRPS_AFTER = slice(2, 6)  # the chirps that a frame's first one is compared with
+CHIRPS_AFTER = slice(2, 6)  # reference for the first chirp of a frame
 UNITS, MAX_VARIATION = {"amplitude": "%", "phase": "mrad"}, {"amplitude": 0.3, "phase": 2.0}
-STILL_SHARE = 1e-3  # moving energy of a static range bin, at most, of its static energy
+STILL_SHARE = 1e-3  # maximum moving / static energy of a static range bin
 MIN_DRIFT_FRAMES = 8
-MIN_DRIFT_SPAN_M = 0.5  # spread of the static cells over range
-WRAPPED_BINS = 3  # at the end of the range axis, where the window's sidelobes of range 0 appear
+MIN_DRIFT_SPAN_M = 0.5  # range spanned by static cells
+WRAPPED_BINS = 3  # last range bins, where window sidelobes of range 0 wrap around
 
 
 @feature("if_last_of_band", "noise in the last 5 % of the band", "dB", 1.0)
 def last_of_band(evidence: SignalEvidence) -> FrameValues:
     """Noise in the last 5 % of the beat frequencies over that from 30 to 80 % of them, in dB.
 
-    The anti-aliasing filter of the receiver falls there. Raises CannotSeeError.
+    The receiver's anti-aliasing filter rolls off there.
+
+    Raises:
+        CannotSeeError: If the cube does not contain all range bins, or there are too few loops.
     """
     noise = evidence.noise_of_band
     count = noise.shape[1]
@@ -32,7 +35,8 @@ def last_of_band(evidence: SignalEvidence) -> FrameValues:
 def near_band(evidence: SignalEvidence) -> FrameValues:
     """Noise in range bins 2 to 6 over that from 30 to 80 % of the band, in dB: the IF high-pass filter.
 
-    Raises CannotSeeError.
+    Raises:
+        CannotSeeError: If the cube does not contain all range bins, or there are too few loops.
     """
     noise = evidence.noise_of_band
     return FrameValues(decibels(np.median(noise[:, NEAR_BINS], axis=1) / _middle(noise)))
@@ -40,7 +44,11 @@ def near_band(evidence: SignalEvidence) -> FrameValues:
 
 @feature("noise_level", "noise of a sample", "dBm", 3.0)
 def noise_level(evidence: SignalEvidence) -> FrameValues:
-    """Noise power of one ADC sample at the receiver's port in dBm. Raises CannotSeeError without a known scale."""
+    """Noise power of one ADC sample at the receiver's port in dBm. Raises CannotSeeError without a known scale.
+
+    Raises:
+        CannotSeeError: If the amplitude scale is unknown, or there are too few loops.
+    """
     scale = evidence.cube.scale
     if not np.isfinite(scale):
         raise CannotSeeError("the amplitude scale of the recording is unknown")
@@ -49,7 +57,11 @@ def noise_level(evidence: SignalEvidence) -> FrameValues:
 
 @feature("strongest_over_noise", "strongest static bin over noise", "dB", 6.0)
 def strongest_over_noise(evidence: SignalEvidence) -> FrameValues:
-    """Strongest static range bin beyond 0.5 m over the noise of one ADC sample, in dB. Raises CannotSeeError."""
+    """Strongest static range bin beyond 0.5 m over the noise of one ADC sample, in dB. Raises CannotSeeError.
+
+    Raises:
+        CannotSeeError: If no range bin lies beyond 0.5 m, or there are too few loops.
+    """
     far = evidence.in_window & (evidence.range_m >= 0.5)
     if not far.any():
         raise CannotSeeError("no range bin beyond 0.5 m")
@@ -60,8 +72,11 @@ def strongest_over_noise(evidence: SignalEvidence) -> FrameValues:
 def leakage_level(evidence: SignalEvidence) -> FrameValues:
     """Strongest static power within 0.15 m over the noise of a chirp's range bin, in dB.
 
-    Transmitters reach receivers over the board and the radome. Of one chirp, so that the number of loops does not
-    matter: a cell of a frame of N loops has 10 log10(N / 1.5) dB less noise. Raises CannotSeeError.
+    Transmitters couple into receivers across the board and the radome. The reference is a single chirp, so that the
+    number of loops does not matter: a cell of a frame with N loops has 10 log10(N / 1.5) dB less noise.
+
+    Raises:
+        CannotSeeError: If the range window does not start at 0, samples are real, or there are too few loops.
     """
     noise = evidence.noise_at_range_0 / noise_share(1, evidence.cube.config.num_loops)
     return FrameValues(decibels(evidence.still_power[:, evidence.range_m <= LEAKAGE_M].max(axis=1) / noise))
@@ -69,7 +84,11 @@ def leakage_level(evidence: SignalEvidence) -> FrameValues:
 
 @feature("leakage_spread", "leakage, strongest over weakest pair", "dB", 4.0)
 def leakage_spread(evidence: SignalEvidence) -> FrameValues:
-    """Strongest over weakest pair of transmitter and receiver within 0.15 m, in dB. Raises CannotSeeError."""
+    """Strongest over weakest pair of transmitter and receiver within 0.15 m, in dB. Raises CannotSeeError.
+
+    Raises:
+        CannotSeeError: If the range window does not start at 0, samples are real, or there are too few loops.
+    """
     _ = evidence.noise_at_range_0
     pairs = (np.abs(evidence.still[:, evidence.range_m <= LEAKAGE_M]) ** 2).max(axis=1)
     return FrameValues(decibels(pairs.max(axis=1) / np.maximum(pairs.min(axis=1), 1e-300)))
@@ -79,7 +98,8 @@ def leakage_spread(evidence: SignalEvidence) -> FrameValues:
 def leakage_skirt(evidence: SignalEvidence) -> FrameValues:
     """Range in m at which the skirt of the leakage has fallen to 3 dB over the noise of a cell.
 
-    Raises CannotSeeError where an echo covers its end.
+    Raises:
+        CannotSeeError: If an echo covers the end of the skirt, or the signal does not show leakage.
     """
     noise = evidence.noise_at_range_0
     power = evidence.still_power / noise[:, None]
@@ -101,9 +121,18 @@ def leakage_skirt(evidence: SignalEvidence) -> FrameValues:
 
 
 def first_chirp(evidence: SignalEvidence) -> tuple[np.ndarray, np.ndarray]:
-    """A frame's first chirp over the third to sixth of its transmitter, of static cells: (frame,), in % and in mrad.
+    """Deviation of a frame's first chirp from the third to sixth of its transmitter, in static cells.
 
-    What the other transmitters show in the same loop is movement and is subtracted. Raises CannotSeeError.
+    Deviations of other transmitters in the same loop are movement and are subtracted.
+
+    Args:
+        evidence: Signal with raw samples.
+
+    Returns:
+        Amplitude in % and phase in mrad, (frame,) each.
+
+    Raises:
+        CannotSeeError: Without raw samples, with too few loops or static range bins, or if later chirps vary too much.
     """
     adc = evidence.signal.adc
     if adc is None:
@@ -129,13 +158,21 @@ def first_chirp(evidence: SignalEvidence) -> tuple[np.ndarray, np.ndarray]:
 
 @feature("first_chirp_amplitude", "first chirp of a frame, amplitude", "%", 0.1, whole_frames=True)
 def first_chirp_amplitude(evidence: SignalEvidence) -> FrameValues:
-    """Amplitude of a frame's first chirp over the third to sixth, minus that of other transmitters."""
+    """Amplitude of a frame's first chirp over the third to sixth, minus that of other transmitters.
+
+    Raises:
+        CannotSeeError: As in `first_chirp`.
+    """
     return FrameValues(first_chirp(evidence)[0])
 
 
 @feature("first_chirp_phase", "first chirp of a frame, phase", "mrad", 0.5, whole_frames=True)
 def first_chirp_phase(evidence: SignalEvidence) -> FrameValues:
-    """Phase of a frame's first chirp against the third to sixth, minus that of other transmitters."""
+    """Phase of a frame's first chirp against the third to sixth, minus that of other transmitters.
+
+    Raises:
+        CannotSeeError: As in `first_chirp`.
+    """
     return FrameValues(first_chirp(evidence)[1])
 
 
@@ -143,14 +180,27 @@ def first_chirp_phase(evidence: SignalEvidence) -> FrameValues:
 def drift(evidence: SignalEvidence) -> FrameValues:
     """Phase of static cells that grows with range, against its mean over the frames: absolute slope in mrad/m.
 
-    An oscillator that is off by the share e turns a cell at range r by 4 pi r e / wavelength. Raises CannotSeeError.
+    A relative oscillator error e rotates a cell at range r by 4 pi r e / wavelength.
+
+    Raises:
+        CannotSeeError: As in `drift_slopes`.
     """
     slope, error = drift_slopes(evidence)
     return FrameValues(np.abs(slope), at_most=bool(np.median(np.abs(slope)) < 2 * np.median(error)))
 
 
 def drift_slopes(evidence: SignalEvidence) -> tuple[np.ndarray, np.ndarray]:
-    """The same with its sign, and its standard error, (frame,) each, in mrad/m. Raises CannotSeeError."""
+    """Phase slope of static cells over range against the mean of all frames, by weighted least squares.
+
+    Args:
+        evidence: Signal of at least eight frames.
+
+    Returns:
+        Slope and standard error in mrad/m, (frame,) each.
+
+    Raises:
+        CannotSeeError: With too few frames, or static cells that span less than half a metre.
+    """
     still = evidence.still
     if len(still) < MIN_DRIFT_FRAMES:
         raise CannotSeeError(f"it takes {MIN_DRIFT_FRAMES} frames, and these are {len(still)}")
@@ -178,7 +228,7 @@ def _middle(noise: np.ndarray) -> np.ndarray:
 
 
 def _still_bins(evidence: SignalEvidence) -> np.ndarray:
-    """Range bins without movement. Raises CannotSeeError where there are none."""
+    """Range bins without movement. Raises CannotSeeError if there are none."""
     moving = evidence.moving_profile[0].mean(axis=0)
     still = np.flatnonzero(moving < STILL_SHARE * evidence.still_power.mean(axis=0))
     if not len(still):

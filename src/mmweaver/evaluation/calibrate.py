@@ -1,8 +1,8 @@
-"""`mmweaver.calibrate`: the board that made some recordings, as far as they show it.
+"""`mmweaver.calibrate`: estimates the board that made recordings, as far as they reveal it.
 
     recordings --fits, each in closed form--> findings --> Board
 
-Every fit reports what it found, or why it could not see it. Reference: docs/board.md.
+Every fit reports its result, or why it cannot be determined. Reference: docs/board.md.
 """
 
 import math
@@ -16,7 +16,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.range_window import chosen_range
 
-# imported for their fits, which register themselves
+# imported to register their fits
 from mmweaver.evaluation import antenna_fits, receiver_fits, time_fits  # noqa: F401
 from mmweaver.evaluation.compared_sides import signals_of
 from mmweaver.evaluation.finding import SIGNAL_FITS, Finding
@@ -34,21 +34,27 @@ NEVER_SEEN = (
 
 @dataclass(frozen=True, kw_only=True)
 class Calibration:
-    """A board, and what was found of it and what was not."""
+    """A board estimated from recordings.
+
+    Attributes:
+        board: The board.
+        findings: What each fit found, or why it found nothing.
+        warnings: Signs of misread samples, which invalidate the board.
+    """
 
     board: Board
     findings: tuple[Finding, ...]
-    warnings: tuple[str, ...] = ()  # samples that seem misread, whose board is none
+    warnings: tuple[str, ...] = ()
 
     def text(self) -> str:
-        """Warnings, what was found, then what could not be seen and why, a line each."""
+        """Formats warnings, results, and what could not be determined, one line each."""
         lines = [f"warning: {one}; what follows may be wrong" for one in self.warnings]
         for title, found in (("found", True), ("not seen", False)):
             lines += [title, *(f"  {one}: {text}" for one, text in self._texts(found).items())]
         return "\n".join(lines)
 
     def to_values(self) -> dict[str, Any]:
-        """The same for JSON; the tables are those of the board."""
+        """The same as plain JSON values; tables are part of the board."""
         return {
             "board": self.board.to_values(),
             "errors": {name: round(error, 4) for one in self.findings for name, error in one.errors.items()},
@@ -70,23 +76,23 @@ def calibrate(
     name: str | None = None,
     **samples: Any,
 ) -> Calibration:
-    """The board that made the recordings: of a room with or without people, unlabelled.
+    """Estimates the board that made recordings of any room, with or without people, without labels.
 
     Args:
-        *recordings: Paths (what `mmweaver compare` takes), a RadarCube, an AdcCube, or what `process_recording` and
-            `Weaver.generate` give; all by one radar with the same settings.
-        radar: Of raw samples: a preset's name, a file or a RadarConfig.
-        range_m: Ranges (near, far) in metres whose echoes show the antennas. Default: all.
+        *recordings: Paths as in `mmweaver compare`, RadarCubes, AdcCubes, or results of `process_recording` and
+            `Weaver.generate`; all from one radar with the same settings.
+        radar: Radar of raw samples: name of a preset, file, or RadarConfig.
+        range_m: Ranges (near, far) in metres from which the antennas are estimated. Default: all.
         range_bins: The same as range bins (first, last).
-        target: What stands at a known distance in the signals.
-        name: Name of the board.
+        target: Target at a known distance in the recordings. Default: none.
+        name: Name of the board. Default: from the recordings.
         **samples: `layout`, `axes`, `iq_order` and `tx_order` of raw samples, see `read_recording`.
 
     Returns:
-        The board, and what was found of it and what was not.
+        The board, with what was found and what could not be determined.
 
     Raises:
-        InputError: for what is no recording, and for several radars.
+        InputError: If a recording cannot be read, or radars differ.
     """
     if not recordings:
         raise InputError("which recordings? give one or more")
@@ -105,7 +111,7 @@ def calibrate(
 
 
 def _warnings(evidence: Sequence[SignalEvidence]) -> tuple[str, ...]:
-    """What in raw samples does not fit the radar: antennas of another order would pass for errors of the board."""
+    """Signs that raw samples do not match the radar: a wrong antenna order would pass for errors of the board."""
     found = [implausible(one.signal.adc, one.cube) for one in evidence if one.signal.adc is not None]
     return tuple(dict.fromkeys(text for texts in found for text in texts))
 
@@ -113,7 +119,7 @@ def _warnings(evidence: Sequence[SignalEvidence]) -> tuple[str, ...]:
 def _window(
     config: RadarConfig, range_m: tuple[float, float] | None, range_bins: tuple[int, int] | None
 ) -> tuple[float, float]:
-    """Nearest and farthest range that is looked at. Raises InputError for what the radar lacks."""
+    """Nearest and farthest range used. Raises InputError if the radar lacks it."""
     if range_m is None and range_bins is None:
         return 0.0, math.inf
     chosen = chosen_range(config, range_m, range_bins)
@@ -121,7 +127,7 @@ def _window(
 
 
 def _check_same_radar(evidence: Sequence[SignalEvidence]) -> None:
-    """Raises InputError where recordings were made by different radars."""
+    """Raises InputError if recordings were made by different radars."""
     first = evidence[0].cube.config
     for one in evidence[1:]:
         own = one.cube.config

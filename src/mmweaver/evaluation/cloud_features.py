@@ -1,4 +1,4 @@
-"""Features of point clouds: points per frame, their extent, strength and speed."""
+"""Features of point clouds: points per frame, extent, SNR and speed."""
 
 from collections.abc import Callable
 
@@ -20,7 +20,14 @@ def points_per_frame(evidence: SignalEvidence) -> FrameValues:
 
 
 def per_cloud(number: Callable[[PointCloud], float]) -> Measure:
-    """A feature of the points of each frame; frames with fewer than three points show nothing."""
+    """Builds a feature from a function of each frame's points.
+
+    Args:
+        number: Maps the points of a frame to a value; frames with fewer than three points yield nan.
+
+    Returns:
+        The feature's measure, which raises CannotSeeError if no frame has three points.
+    """
 
     def measure(evidence: SignalEvidence) -> FrameValues:
         clouds = [evidence.points.select(evidence.points.frame == at) for at in range(len(evidence.signal.cube.values))]
@@ -34,7 +41,11 @@ def per_cloud(number: Callable[[PointCloud], float]) -> Measure:
 
 @feature("points_height", "points, height", "m", 0.3, whole_frames=True)
 def points_height(evidence: SignalEvidence) -> FrameValues:
-    """5th to 95th percentile of z in a frame. Raises CannotSeeError for an array without elevation."""
+    """5th to 95th percentile of z in a frame. Raises CannotSeeError for an array without elevation.
+
+    Raises:
+        CannotSeeError: If the array has no elevation, or no frame has three points.
+    """
     if not has_elevation(evidence.signal.cube.config):
         raise CannotSeeError("the array resolves no elevation")
     return per_cloud(lambda one: _extent_m(one.z_m))(evidence)

@@ -1,4 +1,4 @@
-"""Maps of two signals on the same ranges, velocities and azimuths, in the same decibels."""
+"""Power maps of two signals on common range, velocity and azimuth axes and in the same decibels."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,20 +18,28 @@ MIN_DB = -300.0
 
 @dataclass(frozen=True, kw_only=True)
 class CommonAxes:
-    """Centres of the cells that both signals are shown in."""
+    """Cell centres of the common maps."""
 
     range_m: np.ndarray
-    radial_velocity_mps: np.ndarray | None  # None where one of them has too few loops per frame
-    azimuth_rad: np.ndarray | None  # None where one of them has a row of fewer than three antennas
-    reference: str  # what 0 dB is
+    radial_velocity_mps: np.ndarray | None  # None if a signal has too few loops per frame
+    azimuth_rad: np.ndarray | None  # None if a signal has fewer than three antennas in its azimuth row
+    reference: str  # meaning of 0 dB
 
     @property
     def azimuth_deg(self) -> np.ndarray | None:
+        """Azimuths in degrees, or None."""
         return None if self.azimuth_rad is None else np.degrees(self.azimuth_rad)
 
 
 def shown_m(signal: ComparedSignal) -> np.ndarray:
-    """Ranges of the bins that a signal shows: all of its samples' band, or what its cube keeps."""
+    """Ranges that a signal covers: the entire band of its samples, or the window of its cube.
+
+    Args:
+        signal: The signal.
+
+    Returns:
+        Ranges of the bins in metres, (range,).
+    """
     if signal.adc is None:
         return signal.cube.grid.range_m
     config = signal.adc.config
@@ -41,18 +49,18 @@ def shown_m(signal: ComparedSignal) -> np.ndarray:
 def common_window_m(
     names: Sequence[str], ranges: Sequence[np.ndarray], wanted_m: tuple[float, float] | None = None
 ) -> tuple[float, float]:
-    """The ranges that all signals show.
+    """Determines the range window that all signals cover.
 
     Args:
-        names: Names of the signals, for errors.
-        ranges: Ranges (bin,) of the bins of each, m.
-        wanted_m: Limits (near, far) that are wanted, too.
+        names: Names of the signals, for error messages.
+        ranges: Ranges of each signal's bins in metres, (bin,).
+        wanted_m: Further limits (near, far) in metres. Default: none.
 
     Returns:
-        (near, far) in m.
+        (near, far) in metres.
 
     Raises:
-        InputError: for fewer than four bins.
+        InputError: If it contains fewer than four bins.
     """
     if wanted_m is not None:
         names, ranges = [*names, "--range"], [*ranges, np.linspace(*wanted_m, 2)]
@@ -67,7 +75,18 @@ def common_window_m(
 
 
 def common_axes(a: SignalEvidence, b: SignalEvidence) -> CommonAxes:
-    """Axes as coarse as the coarser of both, as far as both reach."""
+    """Determines axes with the coarser resolution of two signals over the window that both cover.
+
+    Args:
+        a: First signal.
+        b: Second signal.
+
+    Returns:
+        The axes and the reference of decibels.
+
+    Raises:
+        InputError: If there is no common range.
+    """
     configs = [one.cube.config for one in (a, b)]
     near, far = common_window_m((a.signal.name, b.signal.name), (a.range_m, b.range_m))
     near, far = max(near, a.window_m[0]), min(far, a.window_m[1])
@@ -75,7 +94,9 @@ def common_axes(a: SignalEvidence, b: SignalEvidence) -> CommonAxes:
     velocity = None
     if a.has_doppler and b.has_doppler:
         step = max(one.velocity_resolution_mps for one in configs)
-        ends = [one.cube.grid.radial_velocity_mps[[0, -1]] / step for one in (a, b)]  # a Doppler axis has no +maximum
+        ends = [
+            one.cube.grid.radial_velocity_mps[[0, -1]] / step for one in (a, b)
+        ]  # a Doppler axis lacks the positive end
         first, last = max(one[0] for one in ends), min(one[1] for one in ends)
         velocity = np.arange(np.ceil(first - 1e-6), np.floor(last + 1e-6) + 1) * step
     rows = [azimuth_row(one.cube.grid.antenna_position_m, one.cube.grid.wavelength_m) for one in (a, b)]
@@ -95,12 +116,16 @@ def common_axes(a: SignalEvidence, b: SignalEvidence) -> CommonAxes:
 
 
 def maps_of(evidence: SignalEvidence, axes: CommonAxes) -> dict[str, np.ndarray]:
-    """The power of one signal in dB on common axes; energy is kept, whatever the size of its own cells.
+    """Computes the power maps of one signal on common axes; energy is preserved in resampling.
+
+    Args:
+        evidence: The signal.
+        axes: The axes.
 
     Returns:
-        Mean over frames of "range_profile" (range,), static power, "range_doppler" (range, doppler) and
-        "range_azimuth" (range, azimuth); and "moving" (range, frame), mean chirp removed. Maps without axes are
-        missing.
+        Maps in dB by name: "range_profile" (range,), static power, "range_doppler" (range, doppler) and "range_azimuth"
+        (range, azimuth), averaged over frames; and "moving" (range, frame) with the mean chirp removed. Maps without
+        axes are missing.
     """
     cube, range_m = evidence.cube, evidence.range_m
     power = {"range_profile": _resampled(evidence.still_power.mean(axis=0), range_m, axes.range_m)}
@@ -117,7 +142,7 @@ def maps_of(evidence: SignalEvidence, axes: CommonAxes) -> dict[str, np.ndarray]
 
 
 def _gain(evidence: SignalEvidence, axes: CommonAxes) -> float:
-    """What power is multiplied with, so that 1 is 0 dB of the common reference."""
+    """Factor that scales power such that 1 is 0 dB of the common reference."""
     if axes.reference.startswith("dBm"):
         return evidence.cube.scale**2
     if "noise" in axes.reference:
@@ -126,7 +151,7 @@ def _gain(evidence: SignalEvidence, axes: CommonAxes) -> float:
 
 
 def _resampled(power: np.ndarray, own: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Power along the first axis, moved from cells at `own` to cells at `wanted` centres; sums are kept."""
+    """Resamples power along the first axis from cells at `own` to cells at `wanted`; sums are preserved."""
     from_edges, to_edges = _edges(own), _edges(wanted)
     summed = np.concatenate([np.zeros((1, *power.shape[1:])), np.cumsum(power, axis=0)])
     place = np.interp(to_edges, from_edges, np.arange(len(from_edges)))

@@ -1,7 +1,7 @@
-"""Two signals compared: features with their spread, maps on common axes, point clouds, and what tells B from A.
+"""Comparison of two signals: features with spread, maps on common axes, point clouds, and what distinguishes them.
 
     compare("recording/", "simulated/")                paths of any kind, or records
-    compare_signals([signal], [other])                 cubes with points and meta that are in memory
+    compare_signals([signal], [other])                 cubes with points and meta in memory
 
 Reference: docs/compare.md.
 """
@@ -19,7 +19,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud
 from mmweaver.core.version import __version__
 
-# imported for their features, which register themselves
+# imported to register their features
 from mmweaver.evaluation import board_features, cloud_features, person_features, room_features  # noqa: F401
 from mmweaver.evaluation.common_axes import CommonAxes, common_axes, common_window_m, maps_of, shown_m
 from mmweaver.evaluation.compared_sides import signals_of
@@ -29,23 +29,38 @@ from mmweaver.evaluation.signal_evidence import MIN_UNITS, CannotSeeError, Compa
 from mmweaver.io.result_folder import plain
 from mmweaver.recordings.read_recording import RawReading
 
-MIN_RECORDINGS = 4  # as units of the spread; of fewer their frames are
+MIN_RECORDINGS = 4  # with fewer, frames are the units of the spread
 CLEAR_EFFECT = 1.0
 SCHEMA_VERSION = 1
 
 
 @dataclass(frozen=True, kw_only=True)
 class SideValue:
-    """A feature of one side; `spread` is None where it cannot be seen, and `cannot_see` gives the reason."""
+    """A feature of one side.
+
+    Attributes:
+        spread: Median and spread; None if the feature cannot be measured.
+        units: Units of the spread: frames, quarters of frames, or recordings.
+        at_most: Whether the values are upper limits.
+        cannot_see: Reason if it cannot be measured.
+        values: One value per unit.
+    """
 
     spread: Spread | None = None
-    units: str = ""  # frames, quarters of frames, windows or recordings
+    units: str = ""
     at_most: bool = False
     cannot_see: str | None = None
-    values: np.ndarray | None = None  # of the units
+    values: np.ndarray | None = None
 
     def text(self, unit: str) -> str:
-        """The median with its interval, in words."""
+        """Formats the median with its interval.
+
+        Args:
+            unit: Unit of the feature.
+
+        Returns:
+            Text such as "-3.2 (-3.5 to -2.9) dB", or the reason why it cannot be measured.
+        """
         if self.spread is None:
             return f"cannot be seen, {self.cannot_see}"
         low_high = self.spread.interval_95
@@ -55,7 +70,7 @@ class SideValue:
 
 @dataclass(frozen=True, kw_only=True)
 class FeatureComparison:
-    """One feature of both sides; `difference` is None where one of them does not show it."""
+    """One feature of both sides; `difference` is None if it cannot be measured on one of them."""
 
     feature: Feature
     a: SideValue
@@ -64,9 +79,9 @@ class FeatureComparison:
 
     @property
     def gives_away(self) -> bool:
-        """Whether the whole interval of the effect size lies beyond 1: B can be distinguished from A by this feature.
+        """Whether this feature distinguishes B from A: the entire interval of the effect size lies beyond 1.
 
-        An upper limit above the other side's value tells nothing.
+        An upper limit above the other side's value is no evidence.
         """
         span = None if self.difference is None else self.difference.effect_interval_95
         if span is None:
@@ -74,7 +89,7 @@ class FeatureComparison:
         return (span[0] > CLEAR_EFFECT and not self.b.at_most) or (span[1] < -CLEAR_EFFECT and not self.a.at_most)
 
     def text(self) -> str:
-        """A line of the table for a terminal."""
+        """One row of the table for a terminal."""
         if self.difference is None:
             return f"  {self.feature.title}: A {self.a.text(self.feature.unit)}; B {self.b.text(self.feature.unit)}"
         span, alike = self.difference.effect_interval_95, self.difference.separable
@@ -86,7 +101,7 @@ class FeatureComparison:
         return f"{mark} {self.feature.title:42s} {effect:24s} A {a:32s} B {b:32s} {auc}".rstrip()
 
     def to_values(self) -> dict[str, Any]:
-        """The entry of comparison.json."""
+        """Entry of comparison.json."""
         sides = {
             key: {"value": side.spread, "of": side.units, "at_most": side.at_most, "cannot_see": side.cannot_see}
             for key, side in (("a", self.a), ("b", self.b))
@@ -97,7 +112,7 @@ class FeatureComparison:
 
 @dataclass(frozen=True, kw_only=True)
 class SideFacts:
-    """Which signals one side consists of."""
+    """Description of the signals of one side."""
 
     name: str
     recordings: tuple[str, ...]
@@ -108,7 +123,7 @@ class SideFacts:
     has_samples: bool
 
     def text(self) -> str:
-        """One line."""
+        """One line of text."""
         more = f", {len(self.recordings)} recordings" if len(self.recordings) > 1 else ""
         return (
             f"{self.name}: {self.radar}, {self.frames} frames{more}, {self.antennas} antennas,"
@@ -118,22 +133,31 @@ class SideFacts:
 
 @dataclass(frozen=True, kw_only=True)
 class Comparison:
-    """All that `compare` finds; `maps` and `clouds` are those of the first recording of each side."""
+    """Result of `compare`.
+
+    Attributes:
+        sides: Description of A and B.
+        features: All features.
+        axes: Common axes of the maps.
+        maps: Power maps of the first recording of each side, see `common_axes.maps_of`.
+        clouds: Point clouds of the first recording of each side.
+        notes: Sentences on the comparison.
+    """
 
     sides: tuple[SideFacts, SideFacts]
     features: tuple[FeatureComparison, ...]
     axes: CommonAxes
-    maps: tuple[dict[str, np.ndarray], dict[str, np.ndarray]]  # see `common_axes.maps_of`
+    maps: tuple[dict[str, np.ndarray], dict[str, np.ndarray]]
     clouds: tuple[PointCloud, PointCloud]
     notes: tuple[str, ...]
 
     @property
     def ranked(self) -> list[FeatureComparison]:
-        """Features that both sides show, those first that give B away most; those without an interval last."""
+        """Features measured on both sides, largest effect size first; those without an interval come last."""
         return sorted((one for one in self.features if one.difference is not None), key=_rank)
 
     def to_values(self) -> dict[str, Any]:
-        """The content of comparison.json."""
+        """Content of comparison.json."""
         velocity = self.axes.radial_velocity_mps
         common = {
             "range_m": [self.axes.range_m[0], self.axes.range_m[-1]],
@@ -156,13 +180,24 @@ class Comparison:
         )
 
     def save(self, out: str | Path, *, overwrite: bool = False) -> list[Path]:
-        """Writes comparison.png, comparison.json and comparison.html into a folder. Raises InputError."""
+        """Writes comparison.png, comparison.json and comparison.html.
+
+        Args:
+            out: The folder.
+            overwrite: Whether these files may exist. Default: False.
+
+        Returns:
+            Paths of the files.
+
+        Raises:
+            InputError: If a file exists without `overwrite`, or cannot be written.
+        """
         from mmweaver.evaluation.comparison_page import write_comparison
 
         return write_comparison(self, Path(out), overwrite=overwrite)
 
     def text(self) -> str:
-        """The table for a terminal."""
+        """Formats the comparison as a table for a terminal."""
         hidden = [one for one in self.features if one.difference is None]
         lines = [f"A  {self.sides[0].text()}", f"B  {self.sides[1].text()}", "", *(one.text() for one in self.ranked)]
         lines += ["", *(one.text() for one in hidden), "", f"  decibels: {self.axes.reference}"]
@@ -182,18 +217,18 @@ def compare(
 
     Args:
         a: A recording, a result folder, a .mmw file, a stream folder, a folder of any of these; or a RadarCube, an
-            AdcCube, what `Weaver.generate`, `process_recording` or `read_recording` give, or a list of any of these.
+            AdcCube, a result of `Weaver.generate`, `process_recording` or `read_recording`, or a list of any of these.
         b: The same, to be compared with `a`.
-        radar: The radar of raw samples that do not bring theirs: a preset, a file or a RadarConfig.
-        radar_b: That of `b`. Default: `radar`.
-        range_m: Ranges (near, far) in metres that are compared. Default: all that both show.
+        radar: Radar of raw samples without their own: name of a preset, file, or RadarConfig.
+        radar_b: Radar of `b`. Default: `radar`.
+        range_m: Ranges (near, far) in metres to compare. Default: all that both cover.
         **samples: `layout`, `axes`, `iq_order` and `tx_order` of raw samples, see `read_recording`.
 
     Returns:
         The comparison, with `ranked` features, `text()` and `save()`.
 
     Raises:
-        InputError: for what cannot be read or has no common ranges.
+        InputError: If a signal cannot be read, is zero everywhere, or there are no common ranges.
     """
     names = tuple(str(one) if isinstance(one, str | Path) else letter for one, letter in ((a, "A"), (b, "B")))
     radars = radar, radar if radar_b is None else radar_b
@@ -216,14 +251,14 @@ def compare_signals(
     Args:
         a: Signals of A.
         b: Signals of B.
-        names: Names of the sides.
-        range_m: Ranges (near, far) in metres that are compared. Default: all that both show.
+        names: Names of the sides. Default: A and B.
+        range_m: Ranges (near, far) in metres to compare. Default: all that both cover.
 
     Returns:
         The comparison.
 
     Raises:
-        InputError: where they have no common ranges, or one holds nothing but zeros.
+        InputError: If a signal is zero everywhere, or there are no common ranges.
     """
     sides, notes = _unify_detectors(a, b)
     labels = [name if len(side) == 1 else one.name for name, side in zip(names, sides, strict=True) for one in side]
@@ -235,7 +270,7 @@ def compare_signals(
     points_m = common_window_m(labels, [one.cube.grid.range_m for one in every], range_m)
     first = [SignalEvidence(side[0], window_m, points_m) for side in sides]
     measured = [
-        # of all but the first, what was computed is dropped at once: folders hold many recordings
+        # keep intermediate results of the first recording only: folders contain many
         [measure_all(kept), *(measure_all(SignalEvidence(one, window_m, points_m)) for one in side[1:])]
         for kept, side in zip(first, sides, strict=True)
     ]
@@ -251,13 +286,30 @@ def compare_signals(
 
 
 def measure_all(evidence: SignalEvidence) -> dict[str, SideValue]:
-    """All features of one signal by name."""
+    """Measures all features of one signal.
+
+    Args:
+        evidence: The signal.
+
+    Returns:
+        Values by name of the feature.
+    """
     parts = evidence.quarters() if len(evidence.cube.values) < MIN_UNITS else None
     return {feature.name: measure(feature, evidence, parts) for feature in FEATURES}
 
 
 def measure(feature: Feature, evidence: SignalEvidence, parts: SignalEvidence | None = None) -> SideValue:
-    """A feature of one signal, a value per frame; of its `parts`, quarters of few frames, where these show it."""
+    """Measures one feature of a signal, with one value per frame.
+
+    Args:
+        feature: The feature.
+        evidence: The signal.
+        parts: The signal with its few frames divided into quarters, used if the feature can be measured on them.
+            Default: none.
+
+    Returns:
+        Median and spread, or the reason why it cannot be measured.
+    """
     try:
         found, units = _seen(feature, evidence), "frames"
     except CannotSeeError as reason:
@@ -270,7 +322,7 @@ def measure(feature: Feature, evidence: SignalEvidence, parts: SignalEvidence | 
 
 
 def _seen(feature: Feature, evidence: SignalEvidence) -> FrameValues:
-    with np.errstate(divide="ignore", invalid="ignore"):  # of lost frames, which are zero
+    with np.errstate(divide="ignore", invalid="ignore"):  # lost frames are zero
         found = feature.measure(evidence)
     if len(found.values) == len(evidence.is_lost):
         found = replace(found, values=np.where(evidence.is_lost, np.nan, found.values))
@@ -289,7 +341,7 @@ def _compared(feature: Feature, a: list[dict[str, SideValue]], b: list[dict[str,
 
 
 def _pooled(each: list[SideValue], by_recording: bool) -> SideValue:
-    """Of several recordings their medians, or all their frames where recordings are few."""
+    """Pools several recordings: their medians, or all frames if there are few recordings."""
     seen = [(one, one.spread, one.values) for one in each if one.values is not None and one.spread is not None]
     if len(each) == 1 or not seen:
         return each[0]
@@ -306,7 +358,7 @@ def _pooled(each: list[SideValue], by_recording: bool) -> SideValue:
 def _unify_detectors(
     a: Sequence[ComparedSignal], b: Sequence[ComparedSignal]
 ) -> tuple[list[list[ComparedSignal]], list[str]]:
-    """Stored points only where both sides were detected in the same way; else CFAR for all."""
+    """Keeps stored points only if all signals used the same detector; otherwise CFAR for all."""
     kinds = {one.meta.get("points") if one.points is not None else None for one in (*a, *b)}
     if len(kinds) == 1 and None not in kinds:
         return [list(a), list(b)], [f"points as stored, by {kinds.pop()}"]

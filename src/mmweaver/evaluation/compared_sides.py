@@ -1,4 +1,4 @@
-"""The signals of either side of a comparison: files and folders of any kind, records, or folders of these."""
+"""Signals of one side of a comparison: files and folders of any kind, records, or folders of these."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -24,18 +24,18 @@ MAX_RECORDINGS, MAX_BYTES = 200, 4_000_000_000
 
 
 def signals_of(source: Any, reading: RawReading, name: str) -> list[ComparedSignal]:
-    """The signals of one side.
+    """Loads the signals of one side.
 
     Args:
-        source: A file, a folder, a record that has a cube, samples, or a sequence of these.
-        reading: How raw samples are read.
+        source: A file, a folder, a record with a cube, samples, or a sequence of these.
+        reading: How to read raw samples.
         name: Name of the side.
 
     Returns:
-        One signal, or several of a folder or sequence.
+        One signal, or several for a folder or sequence.
 
     Raises:
-        InputError: for anything else.
+        InputError: If the source is anything else or cannot be read.
     """
     if isinstance(source, ComparedSignal):
         return [source]
@@ -89,7 +89,7 @@ def _path_signals(path: Path, reading: RawReading) -> list[ComparedSignal]:
 
 
 def _is_signal(path: Path) -> bool:
-    """Whether a path is one signal."""
+    """Whether a path is a single signal."""
     if path.is_dir():
         return (path / CUBE).is_file() or is_stream(path) or is_capture(path)
     return path.suffix.lower() in (".mmw", *RAW_SUFFIXES) and path.name not in (POINTS, "pose.npz", "analysis.npz")
@@ -106,7 +106,7 @@ def _path_signal(path: Path, reading: RawReading) -> ComparedSignal:
 
 
 def _reading_of(path: Path, reading: RawReading) -> RawReading:
-    """The options that apply to this path; the others apply to the other side."""
+    """Options that apply to this path; the others belong to the other side."""
     if path.is_dir() and _is_signal(path):
         return RawReading()
     if path.suffix == ".npz":
@@ -115,7 +115,7 @@ def _reading_of(path: Path, reading: RawReading) -> RawReading:
 
 
 def _result_signal(result: StoredResult) -> ComparedSignal:
-    """With its raw samples where it holds any, in the scale of its cube."""
+    """Signal of a result folder, with raw samples in the scale of its cube if there are any."""
     adc = None
     if (result.folder / ADC_FILE).is_file():
         counts = (result.meta.get("adc_data_bin") or {}).get("counts_per_unit")

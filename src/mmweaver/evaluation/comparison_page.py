@@ -1,4 +1,4 @@
-"""The files of a comparison: picture, JSON, and one HTML page with picture and table, readable without a network."""
+"""Files of a comparison: picture, JSON, and a self-contained HTML page with picture and table."""
 
 import json
 from base64 import b64encode
@@ -36,7 +36,19 @@ alone, over frames; 50 % where A and B are alike.</p>
 
 
 def check_comparison_folder(out: Path, *, overwrite: bool, inputs: Iterable[Path] = ()) -> list[Path]:
-    """The files that a comparison writes. Raises InputError where one exists, cannot be written, or is an input's."""
+    """Checks the files that a comparison will write.
+
+    Args:
+        out: The folder.
+        overwrite: Whether they may exist.
+        inputs: Files that must not be replaced. Default: none.
+
+    Returns:
+        Paths of the files.
+
+    Raises:
+        InputError: If one exists without `overwrite`, cannot be written, or belongs to an input.
+    """
     paths = [out / name for name in (PICTURE, NUMBERS, PAGE)]
     for path in paths:
         check_output_file(path, overwrite=overwrite, inputs=inputs)
@@ -44,7 +56,19 @@ def check_comparison_folder(out: Path, *, overwrite: bool, inputs: Iterable[Path
 
 
 def write_comparison(comparison: "Comparison", out: Path, *, overwrite: bool) -> list[Path]:
-    """Writes the three files, all or none. Raises InputError where one exists or cannot be written."""
+    """Writes the three files of a comparison, all or none.
+
+    Args:
+        comparison: The comparison.
+        out: The folder.
+        overwrite: Whether they may exist.
+
+    Returns:
+        Paths of the files.
+
+    Raises:
+        InputError: If one exists without `overwrite`, or cannot be written.
+    """
     paths = check_comparison_folder(out, overwrite=overwrite)
     with atomic_files(*paths) as (picture, numbers, page):
         draw_comparison(comparison, picture)
@@ -55,6 +79,14 @@ def write_comparison(comparison: "Comparison", out: Path, *, overwrite: bool) ->
 
 
 def html_page(comparison: "Comparison", picture: bytes) -> str:
-    """The page as text, with the PNG inside."""
+    """Formats the HTML page.
+
+    Args:
+        comparison: The comparison.
+        picture: Content of the PNG, which is embedded.
+
+    Returns:
+        HTML text.
+    """
     title = f"{comparison.sides[1].name} against {comparison.sides[0].name}"
     return _HTML.format(title=escape(title), picture=b64encode(picture).decode(), table=escape(comparison.text()))

@@ -1,4 +1,4 @@
-"""A comparison as one page: maps of A over those of B on the same axes and decibels, and what tells B from A."""
+"""A comparison as one page: maps of A above those of B on common axes and decibels, and what distinguishes B from A."""
 
 from itertools import product
 from pathlib import Path
@@ -17,9 +17,9 @@ DPI = 100
 SPAN_DB = 60.0
 COLOURS = ("#0b7da3", "#c2431c")  # A, B
 MAX_BARS = 14
-MAX_EFFECT, LABELS_AT = 10.0, -33.0  # of the bars; labels stand at the left
-NEAREST_M = 0.5  # leakage would set the scale of everything else
-# map, title, horizontal axis, why it is missing
+MAX_EFFECT, LABELS_AT = 10.0, -33.0  # limit of the bars; position of the labels to their left
+NEAREST_M = 0.5  # excludes leakage from the colour scale
+# map, title, horizontal axis, reason if it is missing
 PANELS = (
     (
         "range_doppler",
@@ -38,7 +38,12 @@ PANELS = (
 
 
 def draw_comparison(comparison: "Comparison", path: Path) -> None:
-    """Writes the page as PNG."""
+    """Draws a comparison as PNG.
+
+    Args:
+        comparison: The comparison.
+        path: The file.
+    """
     import matplotlib
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -57,7 +62,7 @@ def draw_comparison(comparison: "Comparison", path: Path) -> None:
 
 
 def _map(axes: "Axes", comparison: "Comparison", side: int, panel: tuple[str, str, str, str]) -> None:
-    """One map of one side, in the decibels of both."""
+    """Draws one map of one side on the decibel scale of both."""
     name, title, label, missing = panel
     title, common = f"{'AB'[side]}: {title}", comparison.axes
     if name not in comparison.maps[side]:
@@ -106,7 +111,7 @@ def _clouds(axes: "Axes", comparison: "Comparison") -> None:
 
 
 def _effects(axes: "Axes", comparison: "Comparison") -> None:
-    """Bars with intervals, the largest at the top; the scale ends at ten."""
+    """Draws effect sizes as bars with intervals, the largest at the top, clipped at ten."""
     shown = comparison.ranked[:MAX_BARS]
     for at, one in enumerate(shown):
         assert one.difference is not None

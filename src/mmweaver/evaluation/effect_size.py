@@ -1,7 +1,7 @@
-"""How far two sets of values lie apart: medians with bootstrap intervals, effect size, overlap, distance.
+"""Differences between two sets of values: medians with bootstrap intervals, effect size, overlap, distance.
 
 References: Künsch, "The jackknife and the bootstrap for general stationary observations", Annals of Statistics 17,
-1989 (blocks of frames, for neighbouring frames resemble each other); Hedges and Olkin, "Statistical Methods for
+1989 (blocks of frames, since neighbouring frames are correlated); Hedges and Olkin, "Statistical Methods for
 Meta-Analysis", 1985 (standardised difference).
 """
 
@@ -30,18 +30,27 @@ class Spread:
 
 @dataclass(frozen=True, kw_only=True)
 class Difference:
-    """B against A."""
+    """Difference between B and A."""
 
-    difference: float  # of the medians, B less A, in the feature's unit
+    difference: float  # median of B minus median of A, in the feature's unit
     interval_95: Interval | None
-    effect_size: float  # difference over the spread of the units and the feature's tolerance
+    effect_size: float  # difference / (spread of the units combined with the feature's tolerance)
     effect_interval_95: Interval | None
-    separable: float | None  # chance to tell a unit of A from one of B by this feature: 0.5 none; None for few units
-    wasserstein: float  # mean distance between the two distributions, in the feature's unit
+    separable: float | None  # AUC of this feature alone, from 0.5 (none) to 1; None for few units
+    wasserstein: float  # 1-Wasserstein distance of the distributions, in the feature's unit
 
 
 def bootstrap_medians(values: np.ndarray, seed: int, *, in_order: bool) -> np.ndarray:
-    """Medians (draw,) of values drawn with replacement; `in_order`: in blocks of neighbours."""
+    """Bootstraps the median.
+
+    Args:
+        values: Values, (unit,).
+        seed: Seed of the bootstrap.
+        in_order: Whether neighbours are correlated, so that blocks of them are sampled.
+
+    Returns:
+        Medians of 1000 samples with replacement, (sample,).
+    """
     count = len(values)
     block = max(1, round(count ** (1 / 3))) if in_order else 1
     starts = stream(seed, "bootstrap of features").integers(0, count, (DRAWS, -(-count // block)))
@@ -50,12 +59,12 @@ def bootstrap_medians(values: np.ndarray, seed: int, *, in_order: bool) -> np.nd
 
 
 def spread_of(values: np.ndarray, *, in_order: bool, seed: int = 0) -> Spread:
-    """Median, its interval and the spread of values.
+    """Computes median, confidence interval and spread of values.
 
     Args:
-        values: Values (unit,) without nan.
-        in_order: Whether neighbours resemble each other: the bootstrap samples blocks of them.
-        seed: Seed of the bootstrap.
+        values: Values without nan, (unit,).
+        in_order: Whether neighbours are correlated, so that the bootstrap samples blocks.
+        seed: Seed of the bootstrap. Default: 0.
 
     Returns:
         The spread, without an interval for fewer than four values.
@@ -70,14 +79,15 @@ def spread_of(values: np.ndarray, *, in_order: bool, seed: int = 0) -> Spread:
 
 
 def difference_of(a: np.ndarray, b: np.ndarray, tolerance: float, *, in_order: bool, seed: int = 0) -> Difference:
-    """How far B lies from A.
+    """Computes the difference between two sets of values.
 
     Args:
-        a: Values (unit,) of A without nan.
-        b: Values (unit,) of B.
-        tolerance: Keeps features that hardly vary over frames from looking infinitely apart; in the feature's unit.
-        in_order: Whether neighbours resemble each other.
-        seed: Seed of the bootstrap.
+        a: Values of A without nan, (unit,).
+        b: Values of B without nan, (unit,).
+        tolerance: Lower bound of the spread in the feature's unit, so that features with little variation over frames
+            do not give infinite effect sizes.
+        in_order: Whether neighbours are correlated.
+        seed: Seed of the bootstrap. Default: 0.
 
     Returns:
         Difference, effect size, overlap and distance.
@@ -108,6 +118,6 @@ def _interval(draws: np.ndarray) -> Interval:
 
 
 def _variance(values: np.ndarray) -> float:
-    """By the interquartile range, which a single odd frame does not move."""
+    """Variance from the interquartile range, robust against single outlier frames."""
     low, high = np.percentile(values, (25, 75))
     return float(((high - low) / 1.349) ** 2)

@@ -1,4 +1,4 @@
-"""What one fit found of a board, or why it could not see it; fits of signals are declared by one decorator."""
+"""Result of one fit of a board, or why it cannot be determined; fits are registered by a decorator."""
 
 import functools
 from collections.abc import Callable, Sequence
@@ -12,9 +12,13 @@ Measured = TypeVar("Measured")
 
 @dataclass(frozen=True, kw_only=True)
 class Finding:
-    """Fields of `Board` that a fit gives; none where it saw nothing and `text` gives the reason.
+    """Result of a fit.
 
-    `errors`: one standard error of fields where it is known, in the field's unit, rms over a table's entries.
+    Attributes:
+        title: Name of the fit.
+        text: Result in words, or the reason why it cannot be determined.
+        fields: Fields of `Board`; empty if it cannot be determined.
+        errors: One standard error per field where it is known, in the field's unit, rms over a table's entries.
     """
 
     title: str = ""
@@ -24,6 +28,7 @@ class Finding:
 
     @property
     def is_found(self) -> bool:
+        """Whether the fit determined anything."""
         return bool(self.fields)
 
 
@@ -32,7 +37,14 @@ SIGNAL_FITS: list[Fit] = []
 
 
 def signal_fit(title: str) -> Callable[[Fit], Fit]:
-    """Declares a fit of signals; its finding has this title, and what it raises as CannotSeeError is the text."""
+    """Decorator that registers a fit of signals; the text of a CannotSeeError becomes its finding.
+
+    Args:
+        title: Title of its findings.
+
+    Returns:
+        The decorator.
+    """
 
     def register(fit: Fit) -> Fit:
         @functools.wraps(fit)
@@ -50,7 +62,18 @@ def signal_fit(title: str) -> Callable[[Fit], Fit]:
 
 
 def measured(evidence: Sequence[SignalEvidence], measure: Callable[[SignalEvidence], Measured]) -> list[Measured]:
-    """What can be measured in each recording. Raises CannotSeeError where none shows it."""
+    """Measures each recording and skips those that do not show the quantity.
+
+    Args:
+        evidence: Recordings.
+        measure: Measures one recording.
+
+    Returns:
+        Results of the recordings that show it.
+
+    Raises:
+        CannotSeeError: If none does.
+    """
     found, why = [], CannotSeeError("it takes a signal")
     for one in evidence:
         try:

@@ -11,7 +11,17 @@ PowerMaps = Float[np.ndarray, "frame range other"]
 
 
 def shown_db(power: PowerMaps, peak_power: float) -> PowerMaps:
-    """Decibels above the bottom of a 50 dB display whose top is `peak_power`; 0 for everything below the bottom.
+    """Converts power to decibels above the bottom of a 50 dB display.
+
+    Args:
+        power: Power maps, (frame, range, other).
+        peak_power: Power at the top of the display.
+
+    Returns:
+        Level in dB from 0 (at or below the bottom) to 50 (peak).
+
+    Raises:
+        InputError: If the peak is not positive.
 
     >>> shown_db(np.array([[[1.0, 1e-3, 1e-6]]]), 1.0).tolist()
     [[[50.0, 20.0, 0.0]]]
@@ -23,9 +33,19 @@ def shown_db(power: PowerMaps, peak_power: float) -> PowerMaps:
 
 
 def log_map_difference_db(prediction: PowerMaps, truth: PowerMaps) -> float:
-    """Absolute difference of the same displays, summed over all cells, per non-zero cell of the ground truth, in dB.
+    """Absolute difference of two displays, summed over all cells, per nonzero cell of the ground truth.
 
-    0 is perfect. Divided by the cells non-zero in either, a faint glow all over the map would score better than zeros.
+    Divided by cells nonzero in either map, a faint background over the entire map would score better than zeros.
+
+    Args:
+        prediction: Predicted power maps, (frame, range, other).
+        truth: Ground truth of the same shape, whose peak is the top of the display.
+
+    Returns:
+        Difference in dB; 0 is perfect.
+
+    Raises:
+        InputError: If the ground truth is zero everywhere.
 
     >>> truth = np.array([[[1.0, 1e-3, 1e-9]]])
     >>> log_map_difference_db(truth / 10, truth), log_map_difference_db(truth * 0, truth)
@@ -36,6 +56,6 @@ def log_map_difference_db(prediction: PowerMaps, truth: PowerMaps) -> float:
 
 
 def displays(prediction: PowerMaps, truth: PowerMaps) -> tuple[PowerMaps, PowerMaps]:
-    """Both maps in dB on the 50 dB display of the truth."""
+    """Both maps in dB on the 50 dB display of the ground truth."""
     peak = float(truth.max())
     return shown_db(prediction, peak), shown_db(truth, peak)

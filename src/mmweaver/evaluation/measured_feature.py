@@ -1,4 +1,4 @@
-"""A feature of a signal: one function of the evidence, declared by one decorator.
+"""A feature of a signal: one function of the evidence, registered by a decorator.
 
 @feature("noise_level", "noise of a sample", "dBm", tolerance=3.0)
 def noise_level(evidence: SignalEvidence) -> FrameValues: ...
@@ -14,10 +14,10 @@ from mmweaver.evaluation.signal_evidence import SignalEvidence
 
 @dataclass(frozen=True)
 class FrameValues:
-    """A value per frame (or window of frames), in the feature's unit; nan where a frame does not show it."""
+    """One value per frame (or window of frames) in the feature's unit; nan for frames that do not show it."""
 
     values: np.ndarray
-    at_most: bool = False  # nothing was found above the noise in most frames: the values are upper limits
+    at_most: bool = False  # upper limits, since most frames show nothing above the noise
 
 
 Measure = Callable[[SignalEvidence], FrameValues]
@@ -25,13 +25,13 @@ Measure = Callable[[SignalEvidence], FrameValues]
 
 @dataclass(frozen=True, kw_only=True)
 class Feature:
-    """A number that recordings show."""
+    """A quantity that can be measured on any recording."""
 
     name: str
     title: str
     unit: str
-    tolerance: float  # what two recordings of one kind differ by, in `unit`
-    definition: str  # what is measured
+    tolerance: float  # typical difference between similar recordings, in `unit`
+    definition: str
     measure: Measure  # raises CannotSeeError
     whole_frames: bool  # cannot be measured on quarters of a frame
 
@@ -42,18 +42,18 @@ FEATURES: list[Feature] = []
 def feature(
     name: str, title: str, unit: str, tolerance: float, *, definition: str = "", whole_frames: bool = False
 ) -> Callable[[Measure], Measure]:
-    """Declares a function as a feature of `compare`.
+    """Decorator that registers a function as a feature of `compare`.
 
     Args:
         name: Key in comparison.json.
         title: Label in tables.
         unit: Unit of the values.
-        tolerance: What two recordings of one kind differ by, in `unit`.
-        definition: What is measured. Default: the first line of the docstring.
-        whole_frames: Whether quarters of a frame do not show it.
+        tolerance: Typical difference between similar recordings, in `unit`.
+        definition: What is measured. Default: first line of the docstring.
+        whole_frames: Whether it cannot be measured on quarters of a frame. Default: False.
 
     Returns:
-        A decorator that leaves the function as it is.
+        A decorator that leaves the function unchanged.
     """
 
     def register(measure: Measure) -> Measure:

@@ -1,4 +1,4 @@
-"""Features of a person: energy behind the moving body, and slow time of a seated one."""
+"""Features of a person: multipath energy behind the moving body, and slow time of a seated person."""
 
 import numpy as np
 
@@ -8,19 +8,30 @@ from mmweaver.signal.slow_time import moving_cells
 from mmweaver.signal.windows import hann
 
 BODY_HALF_M = 0.3
-MIN_NOISE_SHARE = 0.1  # an energy below a tenth of the noise in its bins cannot be distinguished from none
-SLOW_OVER_REST = 100.0  # 20 dB: movement of a seated person's range bin over the median bin
-SEATED_MPS = 0.3  # a breathing chest is slower
+MIN_NOISE_SHARE = 0.1  # detection limit: energy relative to the noise in its bins
+SLOW_OVER_REST = 100.0  # 20 dB: movement in a seated person's range bin relative to the median bin
+SEATED_MPS = 0.3  # upper limit for a breathing chest
 WINDOW_S = 8.0
 MIN_SLOW_FRAMES = 32
 MIN_HZ = 0.1
 
 
 def behind_body(evidence: SignalEvidence, near_m: float, far_m: float) -> FrameValues:
-    """Moving energy from `near_m` to `far_m` behind the strongest moving bin over that within 0.3 m of it, in dB.
+    """Moving energy behind the strongest moving bin relative to that within 0.3 m of it.
 
-    Paths body -> room -> radar and back are longer than the direct one: their energy lies behind the body at its own
-    Doppler. Raises CannotSeeError.
+    Multipath body -> room -> radar and the reciprocal path are longer than the direct one: their energy appears behind
+    the body at the body's own Doppler.
+
+    Args:
+        evidence: The signal.
+        near_m: Start of the interval behind the body in metres.
+        far_m: End of the interval in metres.
+
+    Returns:
+        Ratio in dB per frame.
+
+    Raises:
+        CannotSeeError: Without movement 13 dB above the noise, or if the range window ends too early.
     """
     profile, noise = evidence.moving_profile
     if not (evidence.body_bin >= 0).any():
@@ -43,9 +54,20 @@ def behind_body(evidence: SignalEvidence, near_m: float, far_m: float) -> FrameV
 
 
 def seated_slow_time(evidence: SignalEvidence, low_hz: float, high_hz: float) -> FrameValues:
-    """Displacement of a seated person from `low_hz` to `high_hz` over all of it, one value per 8 s, in dB.
+    """Energy of a seated person's displacement in a frequency band relative to all above 0.1 Hz.
 
-    Breathing is below 0.6 Hz; what is above 3 Hz is tremor, heart sounds and noise. Raises CannotSeeError.
+    Breathing lies below 0.6 Hz; above 3 Hz there are tremor, heart sounds and noise.
+
+    Args:
+        evidence: The signal.
+        low_hz: Lower end of the band in Hz.
+        high_hz: Upper end of the band in Hz.
+
+    Returns:
+        Ratio in dB, one value per 8 s.
+
+    Raises:
+        CannotSeeError: If the frame rate is too low, or no seated person is found.
     """
     period_s = evidence.cube.config.frame_period_s
     if 0.5 / period_s < high_hz:
@@ -61,7 +83,7 @@ def seated_slow_time(evidence: SignalEvidence, low_hz: float, high_hz: float) ->
 
 
 def _seated_phase(evidence: SignalEvidence) -> np.ndarray:
-    """Phase (frame,) of the range bin of a seated person. Raises CannotSeeError."""
+    """Phase (frame,) of a seated person's range bin. Raises CannotSeeError if there is none."""
     duration_s = len(evidence.still) * evidence.cube.config.frame_period_s
     if len(evidence.still) < MIN_SLOW_FRAMES or duration_s < WINDOW_S:
         raise CannotSeeError(f"slow time needs {WINDOW_S:g} s, and this is {duration_s:.1f} s")
@@ -78,7 +100,7 @@ def _seated_phase(evidence: SignalEvidence) -> np.ndarray:
 
 
 def _speed_mps(evidence: SignalEvidence) -> float:
-    """Median speed of the strongest moving cell of the frames."""
+    """Median over frames of the speed of the strongest moving cell."""
     moving = np.abs(evidence.cube.grid.radial_velocity_mps) > 0
     frames = np.flatnonzero(evidence.body_bin >= 0)
     power = evidence.power[frames, evidence.body_bin[frames]][:, moving]
@@ -88,23 +110,39 @@ def _speed_mps(evidence: SignalEvidence) -> float:
 
 @feature("behind_body_near", "moving energy 0.6 to 1 m behind the body", "dB", 4.0)
 def behind_body_near(evidence: SignalEvidence) -> FrameValues:
-    """Moving energy 0.6 to 1 m behind the strongest moving range bin, over that within 0.3 m of it."""
+    """Moving energy 0.6 to 1 m behind the strongest moving range bin, over that within 0.3 m of it.
+
+    Raises:
+        CannotSeeError: As in `behind_body`.
+    """
     return behind_body(evidence, 0.6, 1.0)
 
 
 @feature("behind_body_far", "moving energy 1 to 2 m behind the body", "dB", 4.0)
 def behind_body_far(evidence: SignalEvidence) -> FrameValues:
-    """Moving energy 1 to 2 m behind the strongest moving range bin, over that within 0.3 m of it."""
+    """Moving energy 1 to 2 m behind the strongest moving range bin, over that within 0.3 m of it.
+
+    Raises:
+        CannotSeeError: As in `behind_body`.
+    """
     return behind_body(evidence, 1.0, 2.0)
 
 
 @feature("seated_3_to_5_hz", "seated person, 3 to 5 Hz", "dB", 4.0, whole_frames=True)
 def seated_3_to_5_hz(evidence: SignalEvidence) -> FrameValues:
-    """Energy of a seated person's displacement from 3 to 5 Hz, over all of it above 0.1 Hz."""
+    """Energy of a seated person's displacement from 3 to 5 Hz, over all of it above 0.1 Hz.
+
+    Raises:
+        CannotSeeError: As in `seated_slow_time`.
+    """
     return seated_slow_time(evidence, 3.0, 5.0)
 
 
 @feature("seated_7_to_10_hz", "seated person, 7 to 10 Hz", "dB", 4.0, whole_frames=True)
 def seated_7_to_10_hz(evidence: SignalEvidence) -> FrameValues:
-    """Energy of a seated person's displacement from 7 to 10 Hz, over all of it above 0.1 Hz."""
+    """Energy of a seated person's displacement from 7 to 10 Hz, over all of it above 0.1 Hz.
+
+    Raises:
+        CannotSeeError: As in `seated_slow_time`.
+    """
     return seated_slow_time(evidence, 7.0, 10.0)

@@ -1,4 +1,4 @@
-"""Errors of predicted skeletons: mean distances of joints (MPJPE), by what is aligned first and by group of joints."""
+"""Errors of predicted skeletons: mean per-joint position error (MPJPE) by alignment and group of joints."""
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -7,7 +7,7 @@ from mmweaver.core.skeleton import JOINT_NAMES
 
 Joints = Float[np.ndarray, "frame 22 3"]
 
-# The joints of the Kinect that MARS is scored on have no collars and no spine1, spine3 of their own.
+# The Kinect joints on which MARS is scored lack collars, spine1 and spine3.
 GROUPS = {
     "torso": ("pelvis", "spine2", "left_shoulder", "right_shoulder", "left_hip", "right_hip"),
     "head": ("neck", "head"),
@@ -19,10 +19,16 @@ ALIGNMENTS = ("root", "centroid", "procrustes")
 
 
 def aligned(predicted_m: Joints, true_m: Joints, alignment: str) -> tuple[np.ndarray, np.ndarray]:
-    """The scored joints of both (frame, 18, 3) after an alignment frame by frame.
+    """Aligns prediction and ground truth frame by frame.
 
-    root: both pelvises at the origin; centroid: both means of the scored joints; procrustes: the prediction also
-    rotated and scaled as fits best.
+    Args:
+        predicted_m: Predicted joints in metres, (frame, 22, 3).
+        true_m: Ground truth in metres, (frame, 22, 3).
+        alignment: "root": both pelvises at the origin; "centroid": both centroids of the scored joints at the origin;
+            "procrustes": the prediction also rotated and scaled by least squares.
+
+    Returns:
+        Scored joints of prediction and ground truth, (frame, 18, 3).
     """
     ours, theirs = predicted_m[:, SCORED], true_m[:, SCORED]
     if alignment == "root":
@@ -32,7 +38,7 @@ def aligned(predicted_m: Joints, true_m: Joints, alignment: str) -> tuple[np.nda
 
 
 def _fitted(ours: np.ndarray, theirs: np.ndarray) -> np.ndarray:
-    """Centred joints (frame, joint, 3) rotated and scaled to others by least squares (Umeyama 1991)."""
+    """Rotates and scales centred joints (frame, joint, 3) to others by least squares (Umeyama 1991)."""
     left, values, right = np.linalg.svd(np.swapaxes(ours, 1, 2) @ theirs)
     flip = np.sign(np.linalg.det(left @ right))
     values[:, -1] *= flip
@@ -44,7 +50,17 @@ def _fitted(ours: np.ndarray, theirs: np.ndarray) -> np.ndarray:
 def joint_errors_cm(
     predicted_m: Joints, true_m: Joints, alignment: str, measured: Bool[np.ndarray, " frame"] | None = None
 ) -> dict[str, float]:
-    """Mean distance in cm: `all` scored joints and each group; frames whose truth is not `measured` do not count."""
+    """Computes mean per-joint position errors.
+
+    Args:
+        predicted_m: Predicted joints in metres, (frame, 22, 3).
+        true_m: Ground truth in metres, (frame, 22, 3).
+        alignment: One of ALIGNMENTS, see `aligned`.
+        measured: Frames with valid ground truth, (frame,). Default: those without nan.
+
+    Returns:
+        Mean distance in cm of "all" scored joints and of each group.
+    """
     chosen = np.isfinite(true_m).all(axis=(1, 2)) if measured is None else measured
     ours, theirs = aligned(predicted_m[chosen], true_m[chosen], alignment)
     far_cm = 100 * np.linalg.norm(ours - theirs, axis=-1).mean(axis=0)

@@ -1,7 +1,7 @@
 """The receiver from any recording: IF response and noise figure from noise, leakage from the bins near range 0.
 
-The room may be unknown. Noise is taken in the outer Doppler bins, without movement. What has passed the
-receiver's IF filter carries its power response; its phase does not show.
+The room may be unknown. Noise is measured in the outer Doppler bins, which contain no movement. It has passed the IF
+filter and shows its power response, but not its phase.
 """
 
 from collections.abc import Sequence
@@ -16,22 +16,42 @@ from mmweaver.evaluation.finding import Finding, measured, signal_fit
 from mmweaver.evaluation.signal_evidence import CannotSeeError, SignalEvidence, decibels
 from mmweaver.propagation.cube_rendering import CubeRenderer
 
-MIDDLE = (0.3, 0.8)  # shares of the band that are passed alike
-NEAREST_NOISE_BIN = 2  # nearer ones hold the leakage and the converter's offset
-NARROW_BINS, NUM_WIDE, NUM_END, LAST_SHARE = 12, 24, 25, 0.9  # knots: each near bin, wide ones, those of the last tenth
+MIDDLE = (0.3, 0.8)  # flat part of the band
+NEAREST_NOISE_BIN = 2  # nearer bins contain leakage and the ADC's DC offset
+NARROW_BINS, NUM_WIDE, NUM_END, LAST_SHARE = 12, 24, 25, 0.9  # knots: each near bin, wide ones, fine ones at the end
 SKIRT_LIMIT_M, LEAKAGE_M = 1.5, 0.15
-OVER_NOISE, OVER_LOWEST = 2.0, 10.0  # where a skirt ends; what is an echo of the room
-MIN_SHARE = 1e-3  # of the largest singular value: weaker taps are noise
+OVER_NOISE, OVER_LOWEST = 2.0, 10.0  # end of a skirt; an echo of the room
+MIN_SHARE = 1e-3  # relative to the largest singular value; weaker taps are noise
 
 
 def sample_noise(evidence: Sequence[SignalEvidence]) -> np.ndarray:
-    """Noise power of an ADC sample as each range bin shows it, (range,). Raises CannotSeeError."""
+    """Noise power of one ADC sample as a function of range bin.
+
+    Args:
+        evidence: Recordings of one radar.
+
+    Returns:
+        Median over all frames, (range,).
+
+    Raises:
+        CannotSeeError: If a cube does not contain all range bins, or there are too few loops.
+    """
     return np.median(np.concatenate([one.noise_of_band[~one.is_lost] / one.noise_share for one in evidence]), axis=0)
 
 
 @signal_fit("IF response")
 def fit_filter(evidence: Sequence[SignalEvidence]) -> Finding:
-    """IF response in dB over its middle, from the noise."""
+    """Estimates the IF power response relative to mid-band from the noise.
+
+    Args:
+        evidence: Recordings of one radar.
+
+    Returns:
+        `if_share`, `if_gain_db` and zero `if_phase_deg`.
+
+    Raises:
+        CannotSeeError: If noise is not available in every range bin.
+    """
     noise = sample_noise(evidence)
     count, config = len(noise), evidence[0].cube.config
     level_db = decibels(noise / _middle(noise))
@@ -54,7 +74,7 @@ def fit_filter(evidence: Sequence[SignalEvidence]) -> Finding:
 
 
 def _knot_edges(count: int) -> list[tuple[int, int]]:
-    """Range bins (first, behind last) of each knot."""
+    """Range bins (first, end) of each knot."""
     near = [(at, at + 1) for at in range(NEAREST_NOISE_BIN, min(NARROW_BINS, count))]
     wide = np.unique(np.linspace(min(NARROW_BINS, count), LAST_SHARE * count, NUM_WIDE + 1).astype(int))
     end = np.unique(np.linspace(wide[-1], count, NUM_END + 1).astype(int))
@@ -68,13 +88,23 @@ def _middle(noise: np.ndarray) -> float:
 
 @signal_fit("noise figure")
 def fit_noise_figure(evidence: Sequence[SignalEvidence]) -> Finding:
-    """Noise figure, where the recording's scale is known."""
+    """Estimates the noise figure if the amplitude scale is known.
+
+    Args:
+        evidence: Recordings of one radar.
+
+    Returns:
+        `noise_figure_db`.
+
+    Raises:
+        CannotSeeError: If the scale is unknown, or there is no noise.
+    """
     scale = evidence[0].cube.scale
     if not np.isfinite(scale):
         raise CannotSeeError("the recording's amplitudes have no known scale")
     power = _middle(sample_noise(evidence))
     config = evidence[0].cube.config
-    power /= 1 - 1 / (3 * config.num_antennas)  # a median over cells of the mean of antennas, over its mean
+    power /= 1 - 1 / (3 * config.num_antennas)  # median / mean of the antenna-averaged noise power
     thermal_mw = BOLTZMANN_J_PER_K * NOISE_TEMPERATURE_K * config.sample_rate_hz * 1e3
     figure_db = float(decibels(power * scale**2 / thermal_mw))
     if not np.isfinite(figure_db):
@@ -86,7 +116,17 @@ def fit_noise_figure(evidence: Sequence[SignalEvidence]) -> Finding:
 
 
 def noise_unit(evidence: SignalEvidence) -> float:
-    """Sqrt(mW) of 1.0 in the recording: its own scale, or what makes its noise that of the radar. CannotSeeError."""
+    """Amplitude of 1.0 in the recording in sqrt(mW).
+
+    Args:
+        evidence: The recording.
+
+    Returns:
+        Its own scale, or the one that gives it the nominal noise power of the radar.
+
+    Raises:
+        CannotSeeError: If the scale is unknown and there is no noise.
+    """
     cube = evidence.cube
     if np.isfinite(cube.scale):
         return float(cube.scale)
@@ -98,7 +138,17 @@ def noise_unit(evidence: SignalEvidence) -> float:
 
 @signal_fit("leakage")
 def fit_leakage(evidence: Sequence[SignalEvidence]) -> Finding:
-    """The transmitters' leakage and its skirt, for each antenna pair, of the recording that shows most of it."""
+    """Estimates TX-RX leakage and its skirt per antenna pair, from the recording with the longest visible skirt.
+
+    Args:
+        evidence: Recordings of one radar.
+
+    Returns:
+        `leakage_range_m` (tap,), `leakage_level_db` and `leakage_phase_deg` (tap, tx, rx).
+
+    Raises:
+        CannotSeeError: If no recording shows leakage, or transmitters are coded.
+    """
     return max(measured(evidence, _leakage), key=lambda one: len(one.fields["leakage_range_m"]))
 
 
@@ -130,15 +180,15 @@ def _leakage(evidence: SignalEvidence) -> Finding:
 
 
 def skirt_end(power: np.ndarray, noise: float, range_m: np.ndarray) -> tuple[int, str]:
-    """Where leakage and its skirt end.
+    """Finds the end of leakage and its skirt.
 
     Args:
-        power: Static power (range,).
+        power: Static power, (range,).
         noise: Noise power of a cell.
-        range_m: Ranges (range,) of the bins, m.
+        range_m: Ranges of the bins in metres, (range,).
 
     Returns:
-        How many range bins they fill, and what ends them: noise, an echo of the room, or the limit.
+        Number of range bins, and what ends the skirt: noise, an echo of the room, or the limit.
     """
     first = int(power[range_m <= LEAKAGE_M].argmax())
     most = max(first + 2, int(np.searchsorted(range_m, SKIRT_LIMIT_M)))
@@ -149,13 +199,21 @@ def skirt_end(power: np.ndarray, noise: float, range_m: np.ndarray) -> tuple[int
     if len(quiet):
         ends.append((int(quiet[0]), "it falls to the noise of a cell"))
     if len(echo):
-        at = int(power[first : first + echo[0] + 1].argmin())  # the room's echo rises from here
+        at = int(power[first : first + echo[0] + 1].argmin())  # start of the room's echo
         ends.append((at, f"an echo at {range_m[first + echo[0]]:.2f} m covers the rest"))
     end, how = min(ends)
     return max(first + end, 1), how
 
 
 def tap_response(config: RadarConfig, range_m: np.ndarray) -> np.ndarray:
-    """What leakage at ranges (tap,) leaves in the range bins at zero Doppler, complex128 (range, tap)."""
+    """Response of the range bins at zero Doppler to leakage.
+
+    Args:
+        config: The radar.
+        range_m: Ranges of the taps in metres, (tap,).
+
+    Returns:
+        Response, complex128 (range, tap).
+    """
     renderer = CubeRenderer(config)
     return renderer.leakage_response(torch.from_numpy(2 * np.asarray(range_m, float))).T.numpy().astype(complex)

@@ -1,4 +1,4 @@
-"""Features of static clutter: how it is spread over range, angle and antennas, and how full the maps are."""
+"""Features of static clutter: distribution over range, angle and antennas, and sparsity of the maps."""
 
 import numpy as np
 
@@ -9,8 +9,8 @@ from mmweaver.signal.plane_waves import best_wave_share, plane_waves
 from mmweaver.signal.spectra import azimuth_axis_rad, range_azimuth_power
 
 CLUTTER_M = (0.7, 3.5)
-MIN_COVERED = 0.85  # of these metres
-NEAREST_CELL_M = 0.5  # leakage lies nearer
+MIN_COVERED = 0.85  # share of CLUTTER_M
+NEAREST_CELL_M = 0.5  # excludes leakage
 STRONG_CELLS = 20
 SPARSE_RANGE_M = (0.5, 6.0)
 MIN_BINS = 8
@@ -20,7 +20,8 @@ MIN_BINS = 8
 def clutter_peak_over_median(evidence: SignalEvidence) -> FrameValues:
     """Strongest over median range bin of static clutter from 0.7 to 3.5 m, in dB: rooms fill every range cell.
 
-    Raises CannotSeeError.
+    Raises:
+        CannotSeeError: If the range window does not cover 0.7 to 3.5 m.
     """
     step_m = evidence.cube.config.range_resolution_m
     inside = (evidence.range_m >= CLUTTER_M[0]) & (evidence.range_m <= CLUTTER_M[1])
@@ -35,7 +36,10 @@ def clutter_peak_over_median(evidence: SignalEvidence) -> FrameValues:
 def plane_wave_share(evidence: SignalEvidence) -> FrameValues:
     """Share of the best plane wave in the 20 strongest static range bins, their median: 1 for a lone far scatterer.
 
-    Several scatterers in a cell, and gains and phases of real channels, lower it. Raises CannotSeeError.
+    Several scatterers per cell and channel imbalance lower it.
+
+    Raises:
+        CannotSeeError: With fewer than three antennas, or too few range bins.
     """
     if evidence.cube.config.num_antennas < 3:
         raise CannotSeeError("fewer than three antennas")
@@ -47,7 +51,8 @@ def plane_wave_share(evidence: SignalEvidence) -> FrameValues:
 def antenna_spread(evidence: SignalEvidence) -> FrameValues:
     """Standard deviation over the antennas of a static cell's level in dB; median of the 20 strongest range bins.
 
-    Raises CannotSeeError.
+    Raises:
+        CannotSeeError: With fewer than three antennas, or too few range bins.
     """
     if evidence.cube.config.num_antennas < 3:
         raise CannotSeeError("fewer than three antennas")
@@ -63,7 +68,11 @@ def antenna_spread(evidence: SignalEvidence) -> FrameValues:
 
 @feature("range_doppler_sparsity", "energy in 1 % of range-Doppler cells", "share", 0.1)
 def range_doppler_sparsity(evidence: SignalEvidence) -> FrameValues:
-    """Share of the energy in the strongest 1 % of the range-Doppler cells. Raises CannotSeeError."""
+    """Share of the energy in the strongest 1 % of the range-Doppler cells. Raises CannotSeeError.
+
+    Raises:
+        CannotSeeError: With too few loops per frame, or too few range bins.
+    """
     if evidence.cube.config.num_loops < MIN_BINS:
         raise CannotSeeError(f"{evidence.cube.config.num_loops} loops per frame make no Doppler axis")
     return FrameValues(_strongest_share(evidence.power[:, _shown(evidence)], 0.01))
@@ -73,7 +82,8 @@ def range_doppler_sparsity(evidence: SignalEvidence) -> FrameValues:
 def range_azimuth_sparsity(evidence: SignalEvidence) -> FrameValues:
     """Share of the energy in the strongest 5 % of the range-azimuth cells (61 azimuths to +-60 degrees).
 
-    Raises CannotSeeError.
+    Raises:
+        CannotSeeError: With fewer than three antennas in the azimuth row, or too few range bins.
     """
     grid = evidence.cube.grid
     if len(azimuth_row(grid.antenna_position_m, grid.wavelength_m)) < 3:
@@ -83,7 +93,7 @@ def range_azimuth_sparsity(evidence: SignalEvidence) -> FrameValues:
 
 
 def _strong_cells(evidence: SignalEvidence) -> list[np.ndarray]:
-    """The values (cell, antenna) of the strongest static range bins of each frame. Raises CannotSeeError."""
+    """Strongest static range bins (cell, antenna) of each frame. Raises CannotSeeError."""
     far = np.flatnonzero((evidence.range_m >= NEAREST_CELL_M) & evidence.in_window)
     if len(far) < MIN_BINS:
         raise CannotSeeError(f"fewer than {MIN_BINS} range bins beyond {NEAREST_CELL_M} m")
@@ -100,7 +110,7 @@ def _shown(evidence: SignalEvidence) -> np.ndarray:
 
 
 def _strongest_share(power: np.ndarray, share: float) -> np.ndarray:
-    """Energy of the strongest `share` of the cells of each frame, over all of it."""
+    """Energy of the strongest `share` of the cells of each frame relative to the total."""
     flat = np.sort(power.reshape(len(power), -1), axis=1)
     count = max(1, round(share * flat.shape[1]))
     return flat[:, -count:].sum(axis=1) / np.maximum(flat.sum(axis=1), 1e-300)

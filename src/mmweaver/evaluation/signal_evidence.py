@@ -1,4 +1,4 @@
-"""One recorded or simulated signal, and what features are measured on: static cells, movement, noise, the body."""
+"""One recorded or simulated signal with the quantities behind its features: static cells, movement, noise, body."""
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -14,41 +14,44 @@ from mmweaver.signal.points import point_cloud
 from mmweaver.signal.spectra import moving_doppler, range_doppler_power
 from mmweaver.signal.windows import noise_share
 
-MAX_CUBE_BYTES = 256_000_000  # of a signal; the rest of a longer one is left out
-QUARTERS = 4  # a recording of one or two frames is measured on quarters of them
-MIN_UNITS = 4  # frames that show a spread
-MIN_LOOPS = 8  # of a Doppler axis that separates movement from clutter
-PERSON_OVER_NOISE = 20.0  # 13 dB: moving energy of a range bin over the noise in it
-NEAREST_BODY_M = 0.25  # leakage and cables lie nearer
-NOISE_BINS = 9  # range bins over which noise is smoothed: an IF response is smooth
+MAX_CUBE_BYTES = 256_000_000  # per signal; later frames are ignored
+QUARTERS = 4  # recordings of a few frames are measured on quarters of frames
+MIN_UNITS = 4  # minimum number of frames for a spread
+MIN_LOOPS = 8  # minimum number of loops to separate movement from clutter
+PERSON_OVER_NOISE = 20.0  # 13 dB: moving energy of a range bin relative to its noise
+NEAREST_BODY_M = 0.25  # excludes leakage and cables
+NOISE_BINS = 9  # range bins over which noise is smoothed, since the IF response is smooth
 
 
 class CannotSeeError(Exception):
-    """A feature that a recording does not show; the message gives the reason."""
+    """A feature cannot be measured on a recording; the message states the reason."""
 
 
 def decibels(ratio: np.ndarray | float) -> np.ndarray:
-    """10 log10 of a ratio of powers; nan where it is not positive."""
+    """Converts a power ratio to dB; nan if it is not positive."""
     power = np.asarray(ratio, float)
     return np.asarray(10 * np.log10(np.where((power > 0) & np.isfinite(power), power, np.nan)))
 
 
 @dataclass(frozen=True, kw_only=True)
 class ComparedSignal:
-    """One side of a comparison; `adc` shows all range bins, the cube only those that were kept."""
+    """One signal of a comparison; `adc` covers all range bins, the cube only its range window."""
 
     name: str
     cube: RadarCube
     adc: AdcCube | None = None
-    points: PointCloud | None = None  # None: detected by CFAR
+    points: PointCloud | None = None  # None: detect by CFAR
     meta: dict[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class SignalEvidence:
-    """What features are measured on; `window_m` are the ranges that all signals show, `points_m` those of their cubes.
+    """Quantities from which features are measured, computed at first use.
 
-    They differ where samples show more than the cube whose points were detected.
+    Attributes:
+        signal: The signal.
+        window_m: Range window (near, far) in metres that all compared signals cover.
+        points_m: The same for their cubes, from which points are detected; samples may cover more.
     """
 
     signal: ComparedSignal
@@ -57,7 +60,7 @@ class SignalEvidence:
 
     @cached_property
     def cube(self) -> RadarCube:
-        """All range bins of the samples where there are samples, else the bins that were kept."""
+        """Cube of all range bins of the samples, or the stored cube without samples."""
         adc, cube = self.signal.adc, self.signal.cube
         if adc is None:
             return cube.select(slice(_frames_that_fit(cube.grid.shape)))
@@ -68,21 +71,22 @@ class SignalEvidence:
 
     @cached_property
     def range_m(self) -> np.ndarray:
+        """Ranges of the cube in metres, (range,)."""
         return self.cube.grid.range_m
 
     @cached_property
     def in_window(self) -> np.ndarray:
-        """Mask (range,) of the ranges that both sides show."""
+        """Mask of the ranges that all signals cover, (range,)."""
         return (self.range_m >= self.window_m[0] - 1e-9) & (self.range_m <= self.window_m[1] + 1e-9)
 
     @cached_property
     def power(self) -> np.ndarray:
-        """Mean of the antennas (frame, range, doppler)."""
+        """Power averaged over antennas, (frame, range, doppler)."""
         return range_doppler_power(self.cube)
 
     @cached_property
     def is_lost(self) -> np.ndarray:
-        """Mask (frame,) of frames that hold nothing but zeros: lost packets."""
+        """Mask of frames that are zero (lost packets), (frame,)."""
         return np.logical_not(self.cube.values.any(axis=(1, 2, 3)))
 
     @cached_property
@@ -92,7 +96,7 @@ class SignalEvidence:
 
     @cached_property
     def still_power(self) -> np.ndarray:
-        """Static power, mean of the antennas, (frame, range)."""
+        """Static power averaged over antennas, (frame, range)."""
         return (np.abs(self.still) ** 2).mean(axis=2)
 
     @cached_property
@@ -103,29 +107,41 @@ class SignalEvidence:
 
     @cached_property
     def mean_still(self) -> np.ndarray:
-        """Zero Doppler, mean over the frames that were not lost, complex128 (range, antenna)."""
+        """Values at zero Doppler averaged over received frames, complex128 (range, antenna)."""
         return self.still[~self.is_lost].mean(axis=0)
 
     @property
     def has_doppler(self) -> bool:
-        """Whether a frame has enough loops to separate movement and noise from clutter."""
+        """Whether there are enough loops per frame to separate movement and noise from clutter."""
         return self.cube.config.num_loops >= MIN_LOOPS
 
     @cached_property
     def noise_of_bin(self) -> np.ndarray:
-        """Noise power of a cell, (frame, range): median over the outer Doppler bins. Raises CannotSeeError."""
+        """Noise power of a cell, (frame, range): median over the outer Doppler bins.
+
+        Raises:
+            CannotSeeError: With too few loops per frame.
+        """
         if not self.has_doppler:
             raise CannotSeeError(f"{self.cube.config.num_loops} loops per frame show no noise")
         return np.median(self.power[:, :, self.far_doppler], axis=2)
 
     @cached_property
     def noise(self) -> np.ndarray:
-        """Noise power of a cell, (frame,). Raises CannotSeeError for few loops."""
+        """Noise power of a cell, median over range, (frame,).
+
+        Raises:
+            CannotSeeError: With too few loops per frame.
+        """
         return np.median(self.noise_of_bin, axis=1)
 
     @property
     def noise_of_band(self) -> np.ndarray:
-        """Noise power (frame, range) of all range bins. Raises CannotSeeError where the cube was cut."""
+        """Noise power of all range bins, (frame, range).
+
+        Raises:
+            CannotSeeError: If the cube does not contain all range bins, or there are too few loops.
+        """
         noise, config = self.noise_of_bin, self.cube.config
         if config.num_range_bins < config.num_unambiguous_range_bins:
             raise CannotSeeError("the range window is cut; it takes raw samples or a cube of all range bins")
@@ -133,7 +149,11 @@ class SignalEvidence:
 
     @property
     def noise_at_range_0(self) -> np.ndarray:
-        """Noise power of a cell, (frame,), of a signal that shows leakage. Raises CannotSeeError for any other."""
+        """Noise power of a cell, (frame,), for signals that show leakage.
+
+        Raises:
+            CannotSeeError: If the range window does not start at 0, samples are real, or there are too few loops.
+        """
         config = self.cube.config
         if config.first_range_bin:
             raise CannotSeeError(f"the range window begins at {self.range_m[0]:.2f} m; it takes raw samples")
@@ -143,30 +163,33 @@ class SignalEvidence:
 
     @property
     def noise_share(self) -> float:
-        """Noise power of a cell over that of one ADC sample."""
+        """Noise power of a cell relative to one ADC sample."""
         return noise_share(self.cube.config.num_samples, self.cube.config.num_loops)
 
     @cached_property
     def moving_profile(self) -> tuple[np.ndarray, np.ndarray]:
-        """Moving energy minus noise, and that noise, both (frame, range). Raises CannotSeeError for few loops.
+        """Moving energy minus noise, and that noise, both (frame, range).
 
-        The mean chirp of each frame is removed and the Doppler bins of movement are summed. Noise is that of each
-        range, from the outer Doppler bins: an IF filter makes it slope by some decibels, and one level for all ranges
-        leaves what looks like faint movement everywhere (3 dB of the energy 1 to 2 m behind a recorded person).
+        The mean chirp of each frame is removed and the Doppler bins of movement are summed. Noise is estimated per
+        range from the outer Doppler bins: the IF filter shapes it by some decibels, and a single level for all ranges
+        would leave apparent movement everywhere (3 dB of the energy 1 to 2 m behind a recorded person).
+
+        Raises:
+            CannotSeeError: With too few loops per frame.
         """
         if not self.has_doppler:
             raise CannotSeeError(f"{self.cube.config.num_loops} loops per frame separate no movement from clutter")
         power = range_doppler_power(remove_static(self.cube))
         moving = moving_doppler(self.cube)
         outer = power[:, :, self.far_doppler & moving]
-        # a median ignores fast limbs, and is below the mean of the antennas' powers by a known factor
+        # the median is robust against fast limbs, and below the mean of the antennas' power by a known factor
         noise = median_filter(np.median(outer, axis=2), size=(1, NOISE_BINS), mode="nearest")
         noise *= moving.sum() / _median_over_mean(self.cube.config.num_antennas)
         return power[:, :, moving].sum(axis=2) - noise, noise
 
     @cached_property
     def body_bin(self) -> np.ndarray:
-        """Range bin of the strongest movement of each frame, (frame,); -1 where nothing moves 13 dB above the noise."""
+        """Range bin with the strongest movement of each frame, (frame,); -1 if nothing moves 13 dB above the noise."""
         if not self.has_doppler:
             return np.full(len(self.still), -1)
         profile, noise = self.moving_profile
@@ -176,13 +199,13 @@ class SignalEvidence:
 
     @cached_property
     def points(self) -> PointCloud:
-        """The signal's points, or those of CFAR, within the common ranges."""
+        """Stored points of the signal, or those of CFAR, within the common ranges."""
         cloud = self.signal.points if self.signal.points is not None else point_cloud(self.signal.cube)
         distance = cloud.range_m
         return cloud.select((distance >= self.points_m[0]) & (distance <= self.points_m[1]))
 
     def quarters(self) -> "SignalEvidence | None":
-        """The same signal with each frame divided into four shorter ones; None where that cannot be."""
+        """The same signal with each frame divided into four; None without samples or with too few loops."""
         adc = self.signal.adc
         if adc is None or adc.config.num_loops < QUARTERS * MIN_LOOPS:
             return None
@@ -195,7 +218,7 @@ class SignalEvidence:
 
 
 def _median_over_mean(num_antennas: int) -> float:
-    """Of noise power averaged over antennas: a gamma distribution of as many degrees of freedom."""
+    """Median / mean of noise power averaged over antennas, a gamma distribution."""
     return float(gammaincinv(num_antennas, 0.5)) / num_antennas
 
 

@@ -1,7 +1,8 @@
 """Range bias and gain from an echo at a known distance: a corner reflector, a metal plate, a wall straight ahead.
 
-The strongest static echo near the stated distance is the target; its place between range bins follows from the Hann
-window's known response, its power is compared with the radar equation. Reference: docs/radar_primer.md, equation 10.
+The strongest static echo near the stated distance is taken as the target. Its sub-bin position follows from the known
+response of the Hann window; its power is compared with the radar equation. Reference: docs/radar_primer.md, equation
+10.
 """
 
 from collections.abc import Sequence
@@ -15,16 +16,24 @@ from mmweaver.evaluation.receiver_fits import noise_unit
 from mmweaver.evaluation.signal_evidence import CannotSeeError, SignalEvidence, decibels
 from mmweaver.propagation.antenna import scatterer_gain
 
-REACH_M = 0.4  # a bias is smaller
-NEAREST_M = 0.3  # nearer, the echo lies in the leakage
-OVER_OTHERS = 10.0  # power of the target over what lies beyond it on both sides
-SIDE_BINS = 4  # as far from its peak as its own response is low
+REACH_M = 0.4  # upper limit of the range bias
+NEAREST_M = 0.3  # nearer echoes are covered by leakage
+OVER_OTHERS = 10.0  # minimum power of the target relative to either side
+SIDE_BINS = 4  # distance from the peak at which its own response is low
 BIAS_TITLE, GAIN_TITLE = "range bias", "gain of echoes"
 
 
 @dataclass(frozen=True)
 class KnownTarget:
-    """A target in the middle of the view: its true distance from the antennas, and its cross section if known."""
+    """A target at boresight.
+
+    Attributes:
+        range_m: True distance from the antennas in metres, 0.3 to 100.
+        cross_section_dbsm: Radar cross section in dBsm; None if unknown.
+
+    Raises:
+        InputError: If a value is out of range.
+    """
 
     range_m: float
     cross_section_dbsm: float | None = None
@@ -37,7 +46,7 @@ class KnownTarget:
 
 
 def unknown_targets() -> list[Finding]:
-    """The findings where no target is known."""
+    """Findings if no target is known."""
     return [
         Finding(title=BIAS_TITLE, text="it takes an echo at a known distance (--target)"),
         Finding(title=GAIN_TITLE, text="it takes an echo of known cross section at a known distance (--target)"),
@@ -45,14 +54,14 @@ def unknown_targets() -> list[Finding]:
 
 
 def fit_target(evidence: Sequence[SignalEvidence], target: KnownTarget) -> list[Finding]:
-    """Range bias and gain from a known target.
+    """Estimates range bias and gain from a known target.
 
     Args:
-        evidence: Recordings, of which the first that shows the target counts.
-        target: Its distance and cross section.
+        evidence: Recordings, of which the first one that shows the target is used.
+        target: Distance and cross section.
 
     Returns:
-        How much too far the target appears, and how much stronger it is than it should be.
+        Findings of `range_bias_m` and `gain_db`, or why they cannot be determined.
     """
     try:
         return measured(evidence, lambda one: _fit(one, target))[0]
@@ -72,7 +81,7 @@ def _fit(evidence: SignalEvidence, target: KnownTarget) -> list[Finding]:
     if not 0 < at < len(mean) - 1 or mean[at] < OVER_OTHERS * max(outer):
         raise CannotSeeError(f"no echo stands out within {REACH_M:g} m of {target.range_m:g} m")
     step_m = config.range_resolution_m
-    offsets = _bin_offsets(power[at - 1 : at + 2])  # each antenna on its own, in bins
+    offsets = _bin_offsets(power[at - 1 : at + 2])  # per antenna, in bins
     found_m = range_m[at] + float(np.mean(offsets)) * step_m
     bias_m, error_m = found_m - target.range_m, float(np.std(offsets) / np.sqrt(len(offsets))) * step_m
     text = f"{100 * bias_m:+.1f} cm (+-{100 * error_m:.1f}): an echo from {target.range_m:g} m is at {found_m:.3f} m"
@@ -94,12 +103,12 @@ def _fit(evidence: SignalEvidence, target: KnownTarget) -> list[Finding]:
 
 
 def _hann_response(offset: float) -> float:
-    """Amplitude of a Hann-windowed tone so many bins off a bin, over that on it."""
+    """Relative amplitude of a Hann-windowed tone at a fractional bin offset."""
     return float(np.sinc(offset) / max(1 - offset**2, 1e-9))
 
 
 def _bin_offsets(power: np.ndarray) -> np.ndarray:
-    """Places (antenna,) of tones in bins relative to the middle one, of power (3, antenna) under a Hann window."""
+    """Fractional offsets (antenna,) of tones from the centre bin, from power (3, antenna) under a Hann window."""
     before, middle, after = np.sqrt(power)
     # a Hann window's main lobe: neighbour over peak = (1 + d) / (2 - d) for a tone d bins towards it
     ahead = after >= before

@@ -1,4 +1,4 @@
-"""What a board does over time: the first chirp of a frame, and the slow drift of its carrier."""
+"""Temporal errors of a board: the first chirp of a frame, and slow drift of the carrier."""
 
 from collections.abc import Sequence
 
@@ -12,14 +12,24 @@ from mmweaver.evaluation.signal_evidence import CannotSeeError, SignalEvidence
 from mmweaver.propagation.board_effects import DRIFT_PERIODS_S, BoardEffects
 
 SURE = 2.0  # standard errors
-NEIGHBOURS = 4.0  # neighbouring range bins share noise, so the fit's error is half of what it is
-PHASES = 300  # of the drift's waves, for what a recording of some length shows of them
-ONE_SIGMA, RARELY_LESS = (0.16, 0.84), 0.1  # quantiles over those phases
+NEIGHBOURS = 4.0  # neighbouring range bins share noise, so the fit underestimates its error by half
+PHASES = 300  # random phases of simulated drift, to estimate how much of it a short recording shows
+ONE_SIGMA, RARELY_LESS = (0.16, 0.84), 0.1  # quantiles over these phases
 
 
 @signal_fit("first chirp of a frame")
 def fit_first_chirp(evidence: Sequence[SignalEvidence]) -> Finding:
-    """Amplitude and phase of a frame's first chirp against later ones."""
+    """Estimates amplitude and phase of a frame's first chirp relative to later ones.
+
+    Args:
+        evidence: Recordings with raw samples.
+
+    Returns:
+        `first_chirp_amplitude_percent` and `first_chirp_phase_mrad` if they are significant.
+
+    Raises:
+        CannotSeeError: As in `first_chirp`.
+    """
     percent, mrad = (np.concatenate(parts) for parts in zip(*measured(evidence, first_chirp), strict=True))
     fields: dict[str, float] = {}
     parts = []
@@ -37,10 +47,19 @@ def fit_first_chirp(evidence: Sequence[SignalEvidence]) -> Finding:
 
 @signal_fit("drift")
 def fit_drift(evidence: Sequence[SignalEvidence]) -> Finding:
-    """Rms over time of the carrier's relative error, from the phase of static cells that grows with range.
+    """Estimates the relative carrier error, rms over time, from the phase slope of static cells over range.
 
-    A recording shows how a slow error changes over the recording's own length, which is less than the rms over time.
-    How much less follows from the waves that a simulated drift is made of, for many of their phases.
+    A recording shows how a slow error varies within its own length, which is less than the long-term rms. The ratio is
+    estimated from simulated drift with many random phases.
+
+    Args:
+        evidence: Recordings.
+
+    Returns:
+        `drift_ppm` with its standard error; the median over recordings.
+
+    Raises:
+        CannotSeeError: If drift does not exceed noise in any recording; the message states the upper limit.
     """
     found = measured(evidence, _drift)
     ppm, low_ppm, high_ppm, own_ppm, seconds = sorted(found)[len(found) // 2]
@@ -54,10 +73,10 @@ def fit_drift(evidence: Sequence[SignalEvidence]) -> Finding:
 
 
 def _drift(evidence: SignalEvidence) -> tuple[float, float, float, float, str]:
-    """Rms over time with its limits, that within the recording, all in ppm, and the recording's length."""
+    """Long-term rms with its limits and rms within the recording, all in ppm, and the recording's length."""
     slope, error = drift_slopes(evidence)
     config = evidence.cube.config
-    per_slope = 1e3 * config.wavelength_m / (4 * np.pi)  # ppm of a mrad/m
+    per_slope = 1e3 * config.wavelength_m / (4 * np.pi)  # ppm per mrad/m
     whole, noise = float((slope**2).mean()), NEIGHBOURS * float((error**2).mean())
     whole_ppm, shown = per_slope * whole**0.5, _shown_drift(config, len(slope))
     seconds = f"{len(slope) * config.frame_period_s:.2g} s"
@@ -72,6 +91,6 @@ def _drift(evidence: SignalEvidence) -> tuple[float, float, float, float, str]:
 
 
 def _shown_drift(config: RadarConfig, frames: int) -> np.ndarray:
-    """Rms over some frames of drifts that have 1 ppm rms over time, without their means, (phase,) in ppm."""
+    """Rms within some frames of drifts with 1 ppm long-term rms, means removed, (phase,) in ppm."""
     effects = BoardEffects(Board(drift_ppm=1.0), config)
     return np.array([1e6 * effects.drift(np.arange(frames), seed).std() for seed in range(PHASES)])

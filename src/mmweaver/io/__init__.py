@@ -1,1 +1,1 @@
-"""Third-party file formats of recordings and radar configurations, and the project's own .npz files."""
+"""File formats of recordings and radar configurations, including the project's own .npz files."""

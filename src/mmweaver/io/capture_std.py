@@ -1,4 +1,4 @@
-"""The radar data of a capture folder written by mmwave-capture-std: <capture>/<radar>/{radar.cfg, dca.pcap}.
+"""Radar data of a capture folder written by mmwave-capture-std: <capture>/<radar>/{radar.cfg, dca.pcap}.
 
 Reference: mmwave-capture-std, "Dataset Directories Structure".
 """
@@ -16,7 +16,7 @@ PACKETS, RADAR = "dca.pcap", "radar.cfg"
 
 @dataclass(frozen=True, kw_only=True)
 class RadarCapture:
-    """The radar data of a capture folder: reassembled packets and radar configuration."""
+    """Radar data of a capture folder: reassembled packets and radar configuration."""
 
     folder: Path
     config: RadarConfig
@@ -24,13 +24,23 @@ class RadarCapture:
 
 
 def is_capture(path: Path | str) -> bool:
-    """Whether a path is a capture folder or a radar's folder in one."""
+    """Whether a path is a capture folder or the folder of a radar in one."""
     path = Path(path)
     return path.is_dir() and bool(_radar_folders(path))
 
 
 def radar_folder(path: Path | str) -> Path:
-    """The folder with the one radar of a capture. Raises InputError where there is none, or more than one."""
+    """Finds the folder of the only radar in a capture.
+
+    Args:
+        path: Capture folder, or the folder of the radar.
+
+    Returns:
+        Folder of the radar.
+
+    Raises:
+        InputError: If there is no radar, or more than one.
+    """
     path = Path(path)
     found = _radar_folders(path) if path.is_dir() else []
     if not found:
@@ -44,9 +54,17 @@ def radar_folder(path: Path | str) -> Path:
 
 
 def read_radar_capture(path: Path | str, frames: slice = slice(None)) -> RadarCapture:
-    """Reads the radar of a capture folder (or the radar's own folder in it), or a stretch of its frames.
+    """Reads the radar data of a capture.
 
-    Raises InputError where a file is missing or damaged, or the samples have headers (lvdsStreamCfg).
+    Args:
+        path: Capture folder, or the folder of the radar.
+        frames: Range of frames. Default: all.
+
+    Returns:
+        Samples, packet statistics and radar configuration.
+
+    Raises:
+        InputError: If a file is missing or damaged, or the samples have headers (lvdsStreamCfg).
     """
     folder = radar_folder(path)
     cfg = folder / RADAR

@@ -1,4 +1,4 @@
-"""A generated sequence as the arrays of other libraries: xarray, torch."""
+"""Conversion of a generated sequence to xarray and torch."""
 
 import json
 from typing import TYPE_CHECKING, Any
@@ -22,7 +22,21 @@ ADC_DIMENSIONS = ("frame_time", "loop", "transmitter", "receiver", "sample")
 def to_dataset(
     cube: RadarCube, points: PointCloud, poses: tuple[PoseSequence, ...], adc: AdcCube | None, meta: dict[str, Any]
 ) -> "Dataset":
-    """See `Generation.to_xarray`. Raises InputError where xarray is not installed."""
+    """Converts a generated sequence to an xarray.Dataset; see `Generation.to_xarray`.
+
+    Args:
+        cube: Radar cube.
+        points: Point cloud.
+        poses: People, at the frames of the cube; may be empty.
+        adc: Raw samples, or None.
+        meta: Content of meta.json, from which text, seed, method, version and radar become attributes.
+
+    Returns:
+        Dataset with named dimensions and units.
+
+    Raises:
+        InputError: If xarray is not installed.
+    """
     need("xarray", "to_xarray", "xarray")
     import xarray
 
@@ -64,7 +78,17 @@ def to_dataset(
 def to_tensors(
     cube: RadarCube, points: PointCloud, poses: tuple[PoseSequence, ...], adc: AdcCube | None
 ) -> "dict[str, Tensor]":
-    """See `Generation.to_torch`."""
+    """Converts a generated sequence to torch tensors; see `Generation.to_torch`.
+
+    Args:
+        cube: Radar cube.
+        points: Point cloud, which becomes `points` (point, 6) with the columns `POINT_COLUMNS`.
+        poses: People, which become `joints_m` (person, frame, 22, 3); may be empty.
+        adc: Raw samples, or None.
+
+    Returns:
+        Tensors by name.
+    """
     import torch
 
     columns = np.stack([np.asarray(getattr(points, name), np.float32) for name in POINT_COLUMNS], axis=1)

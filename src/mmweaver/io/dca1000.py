@@ -3,10 +3,10 @@
 Two lanes (xWR16xx, 18xx, 68xx): frame, loop, transmitter (in firing order), receiver, sample; each four words hold two
 consecutive samples of one receiver: I0 I1 Q0 Q1 ("iq", mmWave Studio's default) or Q0 Q1 I0 I1 ("qi", the SDK's demo,
 SampleSwap 1), or, as other recorders store them, I0 Q0 I1 Q1 ("interleaved"). Four lanes (xWR12xx, 14xx): frame, loop,
-transmitter, sample; each eight words hold one sample of the receivers 0 to 3, I of all and then Q ("qi": Q first); a
-receiver that is off has its lane, too. Real samples (AWR2944) have one word each in the same order; the converter's
-offset is removed. The wrong I/Q order reverses the range axis; without one it is the radar's own (`lvds_iq_order`). Of
-an advanced frame, the words of other sub-frames are skipped, and written as zeros.
+transmitter, sample; each eight words hold one sample of receivers 0 to 3, first I of all, then Q ("qi": Q first);
+disabled receivers keep their lane. Real samples (AWR2944) take one word each in the same order; the DC offset of the
+ADC is removed. A wrong I/Q order reverses the range axis; the default is that of the radar (`lvds_iq_order`). In
+advanced frames, words of other sub-frames are skipped on reading and written as zeros.
 
 Reference: TI SWRA581B, mmWave Radar Device ADC Raw Data Capture.
 """
@@ -25,28 +25,28 @@ from mmweaver.core.safe_files.safe_arrays import read_words
 
 IQ_ORDERS = ("iq", "qi", "interleaved")
 INT16_MAX = 32767
-GROWING = "parts.jsonl"  # next to a file that grows (mmweaver generate --stream): a kill may cut its last frame
-LANES = 4  # of the devices with more than two
-HEADROOM = 0.5  # share of full scale of the largest word where `write_bin` chooses the scale
+GROWING = "parts.jsonl"  # present while a file grows (mmweaver generate --stream): a kill may truncate its last frame
+LANES = 4  # of devices with more than two lanes
+HEADROOM = 0.5  # largest word relative to full scale if `write_bin` chooses the scale
 
 
 def read_bin(
     path: Path | str, config: RadarConfig, *, iq_order: str | None = None, frames: slice = slice(None)
 ) -> AdcCube:
-    """Reads a recording, or a stretch of its frames.
+    """Reads a recording.
 
     Args:
         path: The file.
         config: The radar, whose `tx_order` is the firing order of the recording.
         iq_order: One of IQ_ORDERS. Default: the radar's.
-        frames: Stretch of frames; all by default.
+        frames: Range of frames. Default: all.
 
     Returns:
-        Samples in counts of the converter, so their scale is unknown (nan).
+        Samples in ADC counts; the scale is unknown (nan).
 
     Raises:
-        InputError: where the file cannot be read, is empty or ends within a frame, or where the radar's complex samples
-            are odd in number.
+        InputError: If the file cannot be read, is empty or ends within a frame, or the number of complex samples per
+            chirp is odd.
     """
     _check(config, iq_order)
     chosen = range(num_frames_of_bin(path, config))[frames]
@@ -56,7 +56,18 @@ def read_bin(
 
 
 def num_frames_of_bin(path: Path | str, config: RadarConfig) -> int:
-    """Number of frames of a recording. Raises InputError where it is empty or ends within a frame."""
+    """Counts the frames of a recording.
+
+    Args:
+        path: The file.
+        config: The radar.
+
+    Returns:
+        Number of complete frames.
+
+    Raises:
+        InputError: If the file is empty or ends within a frame.
+    """
     path, size, frame_bytes = Path(path), check_regular(path), bytes_of_frame(config)
     if size == 0:
         raise InputError(f"{path} is empty")
@@ -74,7 +85,7 @@ def num_frames_of_bin(path: Path | str, config: RadarConfig) -> int:
 
 
 def bytes_of_frame(config: RadarConfig) -> int:
-    """The bytes that a DCA1000 sends per radar frame, other sub-frames included."""
+    """Bytes that a DCA1000 sends per radar frame, including other sub-frames."""
     return 2 * (_own_words(config) + config.frame_words_before + config.frame_words_after)
 
 
@@ -88,7 +99,7 @@ def _num_parts(config: RadarConfig) -> int:
 
 
 def _parts(words: np.ndarray, config: RadarConfig, iq_order: str | None) -> np.ndarray:
-    """Words (frame, word) as a view of I and Q: (part, frame, loop, slot, receiver or lane, group, sample of it)."""
+    """View of words (frame, word) as I and Q: (part, frame, loop, slot, receiver or lane, group, sample in group)."""
     head = (len(words), config.num_loops, config.num_slots)
     order = iq_order or config.lvds_iq_order
     if config.lvds_lanes == LANES:
@@ -103,15 +114,24 @@ def _parts(words: np.ndarray, config: RadarConfig, iq_order: str | None) -> np.n
 
 
 def _channels(config: RadarConfig) -> list[int]:
-    """Where a radar's receivers are among those of `_parts`."""
+    """Positions of the radar's receivers on the channel axis of `_parts`."""
     is_laned = config.lvds_lanes == LANES
     return list(config.rx_channels) if is_laned and config.rx_channels else list(range(config.num_rx))
 
 
 def adc_of_words(words: np.ndarray, config: RadarConfig, *, iq_order: str | None = None) -> AdcCube:
-    """Decodes int16 words, (word,), of whole frames as a DCA1000 sends them; samples in counts.
+    """Decodes the words of complete frames as a DCA1000 sends them.
 
-    Raises InputError where the radar's complex samples are odd in number.
+    Args:
+        words: int16 words, (word,).
+        config: The radar.
+        iq_order: One of IQ_ORDERS. Default: the radar's.
+
+    Returns:
+        Samples in ADC counts.
+
+    Raises:
+        InputError: If the number of complex samples per chirp is odd.
     """
     _check(config, iq_order)
     first, last = config.frame_words_before, config.frame_words_before + _own_words(config)
@@ -122,7 +142,7 @@ def adc_of_words(words: np.ndarray, config: RadarConfig, *, iq_order: str | None
         samples = np.empty(shape, np.complex64)
         samples.real, samples.imag = parts
     else:
-        # under the range window: a plain mean holds some of each echo, which would then move at range 0
+        # windowed mean: a plain mean contains part of each echo, which would then appear at range 0 and fluctuate
         weight = 1 - np.cos(2 * np.pi * np.arange(config.num_samples) / config.num_samples)
         samples = (parts[0] - (parts[0] @ (weight / weight.sum()))[..., None]).astype(np.complex64)
     samples = upright(by_transmitter(samples, config), config)
@@ -137,21 +157,22 @@ def write_bin(
     tx_order: tuple[int, ...] | None = None,
     counts_per_unit: float | None = None,
 ) -> float:
-    """Writes a file for `read_bin` and TI's own tools.
+    """Writes a recording for `read_bin` and TI's own tools.
 
     Args:
         path: The file.
         adc: The samples.
         iq_order: One of IQ_ORDERS. Default: the radar's.
-        tx_order: Firing order of the file, for readers with a fixed one; the samples keep the timing of their radar.
-        counts_per_unit: Scale. Default: the largest component is half of full scale.
+        tx_order: Firing order in the file, for readers with a fixed one; the samples keep the timing of their radar.
+            Default: the radar's.
+        counts_per_unit: Scale. Default: the largest component reaches half of full scale.
 
     Returns:
-        The counts per unit of the samples.
+        Counts per unit of the samples.
 
     Raises:
-        InputError: where a sample is not finite or does not fit int16, where complex samples are odd in number, or
-            where the file cannot be written.
+        InputError: If a sample is not finite or does not fit int16, the number of complex samples per chirp is odd, or
+            the file cannot be written.
     """
     words, counts = words_of(adc, iq_order=iq_order, tx_order=tx_order, counts_per_unit=counts_per_unit)
     with atomic_file(Path(path)) as temporary:
@@ -166,7 +187,14 @@ def words_of(
     tx_order: tuple[int, ...] | None = None,
     counts_per_unit: float | None = None,
 ) -> tuple[np.ndarray, float]:
-    """The int16 words (frame, word) that `write_bin` writes, and the counts per unit. Raises InputError as it does."""
+    """Encodes samples as words of a DCA1000; arguments as in `write_bin`.
+
+    Returns:
+        Little-endian int16 words, (frame, word), and the counts per unit of the samples.
+
+    Raises:
+        InputError: As in `write_bin`.
+    """
     config = adc.config if tx_order is None else replace(adc.config, tx_order=tuple(tx_order))
     _check(config, iq_order)
     samples = upright(adc.samples if config.is_coded else adc.samples[:, :, list(config.tx_order)], config)
@@ -196,12 +224,28 @@ def words_of(
 
 
 def by_transmitter(samples: np.ndarray, config: RadarConfig) -> np.ndarray:
-    """Reorders (frame, loop, slot, rx, sample) in firing order by transmitter; slots of a code stay."""
+    """Reorders samples from firing order to transmitter number.
+
+    Args:
+        samples: Samples in firing order, (frame, loop, slot, rx, sample).
+        config: The radar; slots of a coded radar keep their order.
+
+    Returns:
+        Samples, (frame, loop, tx, rx, sample).
+    """
     return samples if config.is_coded else samples[:, :, np.argsort(config.tx_order)]
 
 
 def upright(samples: np.ndarray, config: RadarConfig) -> np.ndarray:
-    """Turns the receivers (..., rx, sample) that a board feeds from the other side by 180 degrees, either way."""
+    """Inverts the receivers with inverted feed (`rx_inverted`); its own inverse.
+
+    Args:
+        samples: Samples, (..., rx, sample).
+        config: The radar.
+
+    Returns:
+        Samples of the same shape.
+    """
     if not config.rx_inverted:
         return samples
     sign = np.ones(config.num_rx, np.float32)
@@ -210,7 +254,7 @@ def upright(samples: np.ndarray, config: RadarConfig) -> np.ndarray:
 
 
 def _check(config: RadarConfig, iq_order: str | None) -> None:
-    """Raises InputError where a DCA1000 has no such recordings."""
+    """Raises InputError if a DCA1000 cannot record this radar or I/Q order."""
     is_paired = config.lvds_lanes != LANES and config.complex_samples
     if iq_order is not None and iq_order not in IQ_ORDERS:
         raise InputError(f"unknown I/Q order {iq_order!r}; known: {', '.join(IQ_ORDERS)}")

@@ -1,9 +1,9 @@
-"""Reassembles the raw packets of a DCA1000: lost ones are zero-filled and counted, late ones put in place.
+"""Reassembly of raw DCA1000 packets: lost ones are zero-filled and counted, late ones are put in place.
 
-A packet holds a sequence number (4 bytes, from 1), the number of bytes sent before it (6 bytes) and up to 1456 bytes
-of samples, all little-endian, on UDP port 4098.
+A packet consists of a sequence number (4 bytes, from 1), the number of bytes sent before it (6 bytes) and up to 1456
+bytes of samples, all little-endian, on UDP port 4098.
 
-Reference: TI SPRUIJ4, DCA1000EVM Data Capture Card User's Guide; mmwave-capture-std keeps the packets as dca.pcap.
+Reference: TI SPRUIJ4, DCA1000EVM Data Capture Card User's Guide; mmwave-capture-std stores the packets as dca.pcap.
 """
 
 import struct
@@ -25,8 +25,8 @@ from mmweaver.io.pcap import udp_packets
 DATA_PORT = 4098
 HEADER = struct.Struct("<IIH")
 HEADER_BYTES = HEADER.size
-MAX_BYTES = 4_000_000_000  # of the frames that are read at once
-MAX_LOSS = 20  # of so many bytes at least one was received
+MAX_BYTES = 4_000_000_000  # of frames read at once
+MAX_LOSS = 20  # bytes sent / bytes received
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,17 +35,21 @@ class PacketReport:
 
     packets: int
     lost: int  # by sequence number, before the last received packet
-    lost_bytes: int  # in the frames that are kept; zero-filled
-    late: int  # received after a packet of a higher number
+    lost_bytes: int  # within complete frames; zero-filled
+    late: int  # received after a packet with a higher number
     repeated: int
-    bytes_after_last_frame: int  # of an unfinished frame, omitted
+    bytes_after_last_frame: int  # of an incomplete frame, dropped
 
 
 @dataclass(frozen=True, kw_only=True)
 class PacketCapture:
-    """Samples of whole frames, their start times (seconds of the recorder's clock), and packet statistics.
+    """Samples of complete frames, their start times and packet statistics.
 
-    `num_frames`: whole frames of the file, and `report` is of all of them, whichever were read.
+    Attributes:
+        adc: Samples in ADC counts.
+        frame_time_s: Start times of the frames in seconds of the recorder's clock.
+        report: Statistics of the entire file, regardless of the frames read.
+        num_frames: Complete frames in the file.
     """
 
     adc: AdcCube
@@ -56,13 +60,13 @@ class PacketCapture:
 
 @dataclass(frozen=True, kw_only=True)
 class _Packets:
-    """Where the packets of a file are and what they hold, without the samples: 40 bytes for each 1.5 kB of the file."""
+    """Index of the packets of a file, without samples: 40 bytes per 1.5 kB of the file."""
 
     path: Path
-    number: np.ndarray  # (packet,) as all others
-    first_byte: np.ndarray  # of the samples sent
+    number: np.ndarray  # sequence number, (packet,) like all fields
+    first_byte: np.ndarray  # offset in the sample stream
     num_bytes: np.ndarray
-    at: np.ndarray  # in the file
+    at: np.ndarray  # offset in the file
     time_s: np.ndarray
 
     @property
@@ -78,23 +82,23 @@ def read_pcap(
     num_frames: int | None = None,
     frames: slice = slice(None),
 ) -> PacketCapture:
-    """Reads a dca.pcap, or a stretch of its frames.
+    """Reads a dca.pcap.
 
-    Memory is that of the frames read and of a list of packets, 3 % of the file.
+    Memory use is that of the frames read plus a packet index of 3 % of the file size.
 
     Args:
         path: The file.
         config: The radar.
         iq_order: One of `dca1000.IQ_ORDERS`. Default: the radar's.
-        num_frames: Number that the radar was configured to send: an incomplete last frame is then kept, with its
-            missing end zero-filled.
-        frames: Stretch of frames; all by default.
+        num_frames: Number of frames that the radar was configured to send; an incomplete last frame is then kept and
+            zero-filled. Default: unknown, only complete frames are kept.
+        frames: Range of frames. Default: all.
 
     Returns:
-        Samples in counts of the converter, start times of the frames, and packet statistics of the whole file.
+        Samples in ADC counts, start times of the frames, and packet statistics of the entire file.
 
     Raises:
-        InputError: where the file has no packets, less than one frame, or two recordings.
+        InputError: If the file contains no packets, less than one frame, or two recordings.
     """
     packets, num_bytes = _sent(path)
     frame_bytes = bytes_of_frame(config)
@@ -129,24 +133,41 @@ def read_pcap(
 
 
 class SampleBytes:
-    """The bytes that a DCA1000 sent, in order, of a recording of its packets; zeros where a packet was lost.
+    """Byte stream sent by a DCA1000, reassembled from its packets; zeros where a packet was lost.
 
-    They are those of the adc_data.bin that TI's own software would have written.
+    Equals the adc_data.bin that TI's software would have written.
     """
 
     def __init__(self, path: Path | str):
-        """Raises InputError where the file has no packets, or nearly all are lost."""
+        """Indexes the packets.
+
+        Args:
+            path: The .pcap file.
+
+        Raises:
+            InputError: If the file contains no packets, or nearly all are lost.
+        """
         self._packets, self.size = _sent(path)
         self._at = 0
 
     def read(self, num_bytes: int) -> bytes:
-        """The next bytes, fewer at the end. Raises InputError where the file holds two recordings."""
+        """Reads the next bytes.
+
+        Args:
+            num_bytes: Maximum number of bytes.
+
+        Returns:
+            The bytes, fewer at the end.
+
+        Raises:
+            InputError: If the file contains two recordings.
+        """
         first, self._at = self._at, min(self.size, self._at + num_bytes)
         return _reassembled(self._packets, first, self._at).tobytes()
 
 
 def _sent(path: Path | str) -> tuple[_Packets, int]:
-    """The packets of a file, and the number of bytes of samples that were sent."""
+    """Packet index of a file, and the number of sample bytes that were sent."""
     path = Path(path)
     changed = path.stat() if path.is_file() else None
     packets = _packets_of(path, None if changed is None else (changed.st_mtime_ns, changed.st_size))
@@ -159,9 +180,9 @@ def _sent(path: Path | str) -> tuple[_Packets, int]:
     return packets, num_bytes
 
 
-@lru_cache(maxsize=1)  # a recording that is read in pieces is looked through once
+@lru_cache(maxsize=1)  # index a recording that is read in pieces only once
 def _packets_of(path: Path, _changed: tuple[int, int] | None) -> _Packets:
-    """The packets of a file. Raises InputError where it has none, or what is no packet of a DCA1000."""
+    """Indexes the packets of a file. Raises InputError if there are none, or one is not from a DCA1000."""
     found = {name: array("Q") for name in ("number", "first_byte", "num_bytes", "at")}
     times = array("d")
     for packet in udp_packets(path, DATA_PORT):
@@ -182,14 +203,14 @@ def _packets_of(path: Path, _changed: tuple[int, int] | None) -> _Packets:
 
 
 def _late_and_repeated(numbers: np.ndarray) -> tuple[int, int]:
-    """The number of packets received after one of a higher number, and of duplicates."""
+    """Number of packets received after one with a higher number, and number of duplicates."""
     _, first = np.unique(numbers, return_index=True)
     once = numbers[np.sort(first)]
     return int(np.count_nonzero(once < np.maximum.accumulate(once))), len(numbers) - len(once)
 
 
 def _num_received(packets: _Packets, size: int) -> int:
-    """How many of the first `size` bytes some packet holds."""
+    """Number of the first `size` bytes that were received."""
     order = np.argsort(packets.first_byte, kind="stable")
     first, last = packets.first_byte[order], np.minimum(packets.last_byte[order], size)
     before = np.maximum.accumulate(np.concatenate([[0], last[:-1]]))
@@ -197,7 +218,7 @@ def _num_received(packets: _Packets, size: int) -> int:
 
 
 def _reassembled(packets: _Packets, first: int, last: int) -> np.ndarray:
-    """The bytes from `first` to `last` in order (byte,), zeros where nothing was received."""
+    """Bytes from `first` to `last` in order, (byte,); zeros where nothing was received."""
     data, is_received = np.zeros(last - first, np.uint8), np.zeros(last - first, bool)
     with open_regular(packets.path) as file:
         for index in np.flatnonzero((packets.first_byte < last) & (packets.last_byte > first)):
@@ -216,9 +237,9 @@ def _reassembled(packets: _Packets, first: int, last: int) -> np.ndarray:
 
 
 def _frame_times(packets: _Packets, frames: int, frame_bytes: int, config: RadarConfig) -> PerFrame:
-    """Arrival time of the packet with each frame's first byte, s; interpolated where that packet was lost."""
+    """Arrival time of the packet with each frame's first byte in seconds; interpolated if that packet was lost."""
     time_s = np.full(frames, np.nan)
-    frame = -(-packets.first_byte // frame_bytes)  # the first that starts at or after a packet's first byte
+    frame = -(-packets.first_byte // frame_bytes)  # first frame that starts at or after the packet's first byte
     starts = (frame < frames) & (frame * frame_bytes < packets.last_byte)
     np.fmin.at(time_s, frame[starts], packets.time_s[starts])
     index = np.arange(frames)

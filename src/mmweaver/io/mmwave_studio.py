@@ -1,4 +1,4 @@
-"""mmWave Studio's .mmwave.json: the radar configuration of a DCA1000 recording."""
+"""mmWave Studio's .mmwave.json: radar configuration of a DCA1000 recording."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -15,15 +15,18 @@ VARIATIONS = ("startFreqVar_MHz", "freqSlopeVar_KHz_usec", "idleTimeVar_usec", "
 
 
 def read_mmwave_studio(path: Path | str, options: RadarOptions | None = None) -> RadarConfig:
-    """The radar of the file's first device, named after the file.
+    """Reads the radar of the first device in a .mmwave.json.
 
     Args:
-        path: The file.
-        options: A sub-frame of an advanced frame, and the board's antennas and lanes where they differ.
+        path: The file, after which the radar is named.
+        options: Sub-frame of an advanced frame, antennas and lanes of the board. Default: as in the file.
+
+    Returns:
+        The radar.
 
     Raises:
-        InputError: where the file cannot be read, a key is missing or of the wrong type, chirps differ or cannot be
-            separated, or the radar could not exist.
+        InputError: If the file cannot be read, a key is missing or malformed, chirps differ or cannot be separated, or
+            the radar is impossible.
     """
     path = Path(path)
     values = read_json(path)
@@ -39,7 +42,7 @@ def read_mmwave_studio(path: Path | str, options: RadarOptions | None = None) ->
 
 
 def is_mmwave_studio(values: Any) -> bool:
-    """Whether this JSON looks like mmWave Studio's."""
+    """Whether decoded JSON looks like mmWave Studio's."""
     return isinstance(values, dict) and "mmWaveDevices" in values
 
 
@@ -82,7 +85,7 @@ def _setup(name: str, device: Any) -> TiSetup:
 
 
 def _turn(setup: TiSetup, entry: Any, phase_deg: list[float]) -> None:
-    """Adds phases to the transmitters of a span of chirps."""
+    """Adds transmitter phases to a span of chirps."""
     first, last = _span(entry)
     for number, chirp in setup.chirps.items():
         if first <= number <= last:
@@ -105,8 +108,8 @@ def _profile(profile: Any) -> TiProfile:
 
 
 def _frames(setup: Any) -> tuple[list[TiFrame], float]:
-    """The plain frame, or the sub-frames of an advanced one; and the period of the whole frame in ms."""
-    waveform = setup.get("waveformType", PLAIN_FRAMES[0])  # writers other than mmWave Studio leave it out
+    """The plain frame or the sub-frames of an advanced one, and the period of the entire frame in ms."""
+    waveform = setup.get("waveformType", PLAIN_FRAMES[0])  # omitted by writers other than mmWave Studio
     if waveform in PLAIN_FRAMES:
         frame = setup["rlFrameCfg_t"]
         first, last = _span(frame)
@@ -130,7 +133,7 @@ def _span(entry: Any) -> tuple[int, int]:
 
 
 def _whole(value: Any) -> int:
-    """An integer, or a hexadecimal string as mmWave Studio writes masks."""
+    """An integer, or a hexadecimal string, the format of mmWave Studio's masks."""
     if isinstance(value, str):
         return int(value, 0)
     if isinstance(value, bool) or value != int(value):

@@ -1,6 +1,6 @@
 """radar.npz, pose.npz and points.npz: the project's own files, plain numpy archives.
 
-They are not pickled, not compressed, and have no dates: the same arrays give the same bytes.
+They contain no pickles, compression or dates, so equal arrays give equal bytes.
 
 Reference: docs/conventions.md, "Files".
 """
@@ -31,13 +31,18 @@ CUBE_UNITS = {
 }
 POINT_COLUMNS = ("x_m", "y_m", "z_m", "radial_velocity_mps", "snr_db")
 FIRMWARE_COLUMNS = ("intensity",)
-MAX_CUBE, MAX_TIME_S = 1e15, 1e12  # far above what is recorded; squares and sums stay finite
-NO_DATE = (1980, 1, 1, 0, 0, 0)  # the first a zip file can name
+MAX_CUBE, MAX_TIME_S = 1e15, 1e12  # far above recorded values; squares and sums stay finite
+NO_DATE = (1980, 1, 1, 0, 0, 0)  # earliest date of the zip format
 
 
 # radar.npz ----------------------------------------------------------------------------------------------------------
 def write_radar_npz(path: Path, cube: RadarCube) -> None:
-    """Writes a cube with its axes: complex64 (frame, range, doppler, antenna), s, m, m/s, m."""
+    """Writes a radar cube with its axes.
+
+    Args:
+        path: The file.
+        cube: Cube, written as complex64 (frame, range, doppler, antenna); axes in s, m, m/s and m.
+    """
     axes = {name: np.asarray(value, np.float64) for name, value in vars(cube.grid).items()}
     write_npz(
         path,
@@ -54,14 +59,14 @@ def read_radar_npz(path: str | Path, config: RadarConfig | None = None, *, mappe
 
     Args:
         path: The file.
-        config: Its radar. Default: the radar.json in the same folder.
-        mapped: Whether the cube is left on the disk, read-only.
+        config: Its radar. Default: from the radar.json in the same folder.
+        mapped: Whether the cube is memory-mapped, read-only. Default: False.
 
     Returns:
-        The cube, complex64 (frame, range, doppler, antenna).
+        Cube, complex64 (frame, range, doppler, antenna).
 
     Raises:
-        InputError: where the file is not such an archive, or its shape does not match the radar.
+        InputError: If the file is not such an archive, or its shape does not match the radar.
     """
     path = Path(path)
     if config is None:
@@ -95,13 +100,13 @@ def _radar_of(path: Path) -> RadarConfig:
 
 # pose.npz -----------------------------------------------------------------------------------------------------------
 def write_pose_npz(path: Path, *poses: PoseSequence, time_s: PerFrame | None = None) -> None:
-    """Writes joints in metres in the radar's frame, with names and times.
+    """Writes joints in metres in the radar's frame, with joint names and times.
 
     Args:
         path: The file.
-        *poses: People, all at the same times: float32 (frame, 22, 3) and `height_m` () for one, (person, frame, 22, 3)
-            and (person,) for none or several.
-        time_s: Times (frame,) in s of an empty place. Default: those of the poses.
+        *poses: People at common times. One person is written as float32 (frame, 22, 3) with scalar `height_m`; none or
+            several as (person, frame, 22, 3) with `height_m` (person,).
+        time_s: Times in seconds, (frame,), required without people. Default: those of the poses.
     """
     time_s = np.asarray(poses[0].time_s if time_s is None else time_s, np.float64)
     joints_m = np.array([one.joints_m for one in poses], np.float32).reshape(
@@ -124,10 +129,10 @@ def read_poses_npz(path: str | Path) -> tuple[PoseSequence, ...]:
         path: The file.
 
     Returns:
-        People, as subjects 0, 1, 2 ...; none of an empty place.
+        One sequence per person with subjects 0, 1, 2 ...; empty for an empty room.
 
     Raises:
-        InputError: for anything else.
+        InputError: If the file is not a pose.npz.
     """
     path = Path(path)
     held = _read(path)
@@ -148,9 +153,11 @@ def read_poses_npz(path: str | Path) -> tuple[PoseSequence, ...]:
 
 # points.npz ---------------------------------------------------------------------------------------------------------
 def write_points_npz(path: Path, points: PointCloud) -> None:
-    """Writes detections, one row each: frame (int32) and five float32 columns, all of one length.
+    """Writes detections, one row per point: frame (int32) and five float32 columns.
 
-    Points of the firmware have a sixth, `intensity`, in the device's counts.
+    Args:
+        path: The file.
+        points: Point cloud; firmware points have a sixth column, `intensity`, in device counts.
     """
     names = (*POINT_COLUMNS, *(name for name in FIRMWARE_COLUMNS if hasattr(points, name)))
     columns = {name: np.asarray(getattr(points, name), np.float32) for name in names}
@@ -158,7 +165,17 @@ def write_points_npz(path: Path, points: PointCloud) -> None:
 
 
 def read_points_npz(path: str | Path) -> PointCloud:
-    """Reads a points.npz. Raises InputError for anything else."""
+    """Reads a points.npz.
+
+    Args:
+        path: The file.
+
+    Returns:
+        Point cloud without intensity.
+
+    Raises:
+        InputError: If the file is not a points.npz.
+    """
     path = Path(path)
     held = _read(path)
     columns = {name: held.numbers(name, ("point",), kinds="f", low=-1e9, high=1e9) for name in POINT_COLUMNS}
@@ -167,7 +184,15 @@ def read_points_npz(path: str | Path) -> PointCloud:
 
 # archives -----------------------------------------------------------------------------------------------------------
 def write_npz(path: Path, **arrays: np.ndarray | np.generic) -> None:
-    """Writes a numpy archive, uncompressed and without dates; arrays of Python objects are refused."""
+    """Writes an uncompressed numpy archive without dates.
+
+    Args:
+        path: The file.
+        **arrays: Arrays by name.
+
+    Raises:
+        ValueError: If an array contains Python objects.
+    """
     with zipfile.ZipFile(path, "w", zipfile.ZIP_STORED, allowZip64=True) as archive:
         for name, array in arrays.items():
             entry = zipfile.ZipInfo(f"{name}.npy", date_time=NO_DATE)
@@ -176,6 +201,6 @@ def write_npz(path: Path, **arrays: np.ndarray | np.generic) -> None:
 
 
 def _read(path: Path, mapped: tuple[str, ...] = ()) -> NpzArrays:
-    """Reads an archive once it was checked against the checksums of its folder."""
+    """Reads an archive after checking it against the checksums of its folder."""
     check_file(path)
     return read_npz(path, mapped=mapped)

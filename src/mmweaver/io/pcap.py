@@ -1,4 +1,4 @@
-"""UDP packets of a .pcap file as tcpdump writes it, or of a .pcapng of Wireshark, with the standard library only.
+"""UDP packets of a .pcap file (tcpdump) or .pcapng file (Wireshark), with the standard library only.
 
 Reference: IETF draft-ietf-opsawg-pcap and draft-ietf-opsawg-pcapng; RFC 791, RFC 768.
 """
@@ -21,16 +21,16 @@ MAGIC = {
     b"\xa1\xb2\x3c\x4d": (">", 1e9),
 }
 PCAPNG = b"\x0a\x0d\x0d\x0a"
-SECTION, INTERFACE, PACKET, RESOLUTION = 0x0A0D0D0A, 1, 6, 9  # blocks of pcapng, and an option of an interface
+SECTION, INTERFACE, PACKET, RESOLUTION = 0x0A0D0D0A, 1, 6, 9  # pcapng block types, and an interface option
 # link type: bytes before the network layer, and the offset of the protocol number in them (None: always IP)
 LINK_TYPES: dict[int, tuple[int, int | None]] = {1: (14, 12), 101: (0, None), 113: (16, 14), 276: (20, 0)}
-MAX_KEPT = 2**18  # bytes of a packet that recorders keep at most; longer ones are skipped
+MAX_KEPT = 2**18  # maximum captured bytes per packet; longer ones are skipped
 IPV4, VLAN, UDP = 0x0800, 0x8100, 17
 
 
 @dataclass(frozen=True)
 class UdpPacket:
-    """The payload of a packet, its first byte in the file, and its capture time (seconds of the recorder's clock)."""
+    """Payload of a packet, its offset in the file, and its capture time in seconds of the recorder's clock."""
 
     time_s: float
     payload: bytes
@@ -38,17 +38,17 @@ class UdpPacket:
 
 
 def udp_packets(path: Path | str, port: int) -> Iterator[UdpPacket]:
-    """The packets of a .pcap or .pcapng that were sent to a UDP port, in the order of the file.
+    """Iterates over the packets sent to a UDP port, in file order.
 
     Args:
-        path: The file.
+        path: .pcap or .pcapng file.
         port: Destination port.
 
     Yields:
-        One packet at a time. A truncated last packet (the recorder was stopped) is omitted.
+        One packet at a time; a truncated last packet (recorder stopped) is dropped.
 
     Raises:
-        InputError: where the file cannot be read, is not a .pcap, or is truncated before its first packet.
+        InputError: If the file cannot be read, is not a .pcap, or is truncated before its first packet.
     """
     path = Path(path)
     size = check_regular(path)
@@ -60,7 +60,7 @@ def udp_packets(path: Path | str, port: int) -> Iterator[UdpPacket]:
                 yield UdpPacket(time_s, found[1], at + found[0])
 
 
-Record = tuple[float, int, int, bytes]  # time in s, link type, place in the file, bytes of a packet
+Record = tuple[float, int, int, bytes]  # time in s, link type, offset in the file, bytes of the packet
 
 
 def _known_link(path: Path, link: int) -> int:
@@ -72,7 +72,7 @@ def _known_link(path: Path, link: int) -> int:
 
 
 def _read(file: BufferedReader, num: int) -> bytes:
-    """So many bytes; none of a packet that is longer than any."""
+    """Reads `num` bytes; skips packets that are too long and returns none of them."""
     if num <= MAX_KEPT:
         return file.read(num)
     file.seek(num, os.SEEK_CUR)
@@ -99,9 +99,9 @@ def _pcap_records(path: Path, file: BufferedReader, size: int, start: bytes) -> 
 
 
 def _pcapng_records(path: Path, file: BufferedReader, size: int) -> Iterator[Record]:
-    """Enhanced packet blocks of a pcapng file, with the link and clock of their interface."""
+    """Enhanced packet blocks of a pcapng file, with link type and clock of their interface."""
     order, at = "<", 0
-    links: list[tuple[int, float]] = []  # of each interface: link type, ticks per second
+    links: list[tuple[int, float]] = []  # link type and ticks per second of each interface
     file.seek(0)
     while len(head := file.read(12)) == 12:
         kind, length = struct.unpack_from(f"{order}II", head)
@@ -126,7 +126,7 @@ def _pcapng_records(path: Path, file: BufferedReader, size: int) -> Iterator[Rec
 
 
 def _ticks(data: bytes, at: int, end: int, order: str) -> float:
-    """Clock ticks per second of an interface, from its option if_tsresol; microseconds without it."""
+    """Clock ticks per second of an interface, from its option if_tsresol; microseconds by default."""
     while at + 4 <= end - 4:
         code, size = struct.unpack_from(f"{order}HH", data, at)
         if code == 0:
@@ -139,7 +139,7 @@ def _ticks(data: bytes, at: int, end: int, order: str) -> float:
 
 
 def _udp_payload(data: bytes, link: int, port: int) -> tuple[int, bytes] | None:
-    """The payload and where it begins if the packet is IPv4, UDP and for this port, else None."""
+    """Offset and payload if the packet is IPv4 and UDP with this destination port, else None."""
     at, kind_at = LINK_TYPES[link]
     end = len(data)
     if kind_at is not None:

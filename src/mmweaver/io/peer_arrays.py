@@ -1,11 +1,11 @@
-"""Arrays in which other projects store radar recordings: HuPR's frames, the ADC samples of mmMesh and RF-Genesis.
+"""Arrays in which other projects store radar recordings: HuPR, CubeLearn, mmMesh and RF-Genesis.
 
 HuPR: one .npy per frame, complex (doppler 16, range 64, azimuth 64, elevation 8): the middle 16 of 64 Doppler bins,
-range from far to near, no windows, the mean over loops removed, zero-padded angle FFTs, both angles reversed. The
-elevation FFT was computed at azimuth channels 2 to 5 only, where the array has two rows. All of it is invertible.
+range from far to near, no windows, mean over loops removed, zero-padded angle FFTs, both angles reversed. The elevation
+FFT was computed only at azimuth channels 2 to 5, where the array has two rows. All of these steps are invertible.
 CubeLearn: real (I/Q, frame 20, loop 128, virtual antenna 12, sample 256).
-mmMesh: complex (tx, rx, loop, sample) of a frame, or a stack of frames. RF-Genesis: radar_frames.npy, complex
-(frame, tx, rx, loop, sample).
+mmMesh: complex (tx, rx, loop, sample) of one frame, or a stack of frames.
+RF-Genesis: radar_frames.npy, complex (frame, tx, rx, loop, sample).
 """
 
 from collections.abc import Callable
@@ -27,14 +27,24 @@ HUPR_ANTENNAS = (3, 4)
 ADC_SHAPE = (3, 4, 128, 256)
 CUBELEARN_SHAPE = (128, 12, 256)
 POINT_COLUMNS = 6
-# azimuth channel of receiver 0 of each transmitter; the second has the upper row
+# azimuth channel of receiver 0 per transmitter; the second transmitter forms the upper row
 HUPR_FIRST_CHANNEL = (0, 2, 4)
 UPPER_TX, BOTH_ROWS = 1, slice(2, 6)
-MAX_RESIDUAL = 1e-3  # share of the energy that may lie where the array has no antenna
+MAX_RESIDUAL = 1e-3  # share of the energy allowed where the array has no antenna
 
 
 def detect_layout(path: Path) -> str:
-    """The layout that an array's shape implies. Raises InputError where it implies none, or several."""
+    """Detects the project from the shape of an array.
+
+    Args:
+        path: .npy file, or folder of HuPR frames.
+
+    Returns:
+        Key of `LAYOUTS`.
+
+    Raises:
+        InputError: If the shape matches no project, or several.
+    """
     if path.is_dir():
         return "hupr"
     shape = read_npy(path, mapped=True).shape
@@ -55,7 +65,18 @@ def detect_layout(path: Path) -> str:
 
 
 def read_cubelearn(path: Path, config: RadarConfig) -> AdcCube:
-    """Reads (I/Q, frame, loop, virtual antenna, sample), antennas in firing order. Raises InputError."""
+    """Reads an array of CubeLearn: real (I/Q, frame, loop, virtual antenna, sample), antennas in firing order.
+
+    Args:
+        path: .npy file.
+        config: TDM radar with complex samples.
+
+    Returns:
+        Samples in the unit of the file.
+
+    Raises:
+        InputError: If the array or the radar does not match.
+    """
     values = read_npy(path)
     if values.ndim != 5 or len(values) != 2 or values.dtype.kind not in "fi":
         raise InputError(
@@ -68,16 +89,34 @@ def read_cubelearn(path: Path, config: RadarConfig) -> AdcCube:
 
 
 def read_mmmesh(path: Path, config: RadarConfig) -> AdcCube:
-    """Reads one frame or more; transmitters in firing order. Raises InputError where the array is not mmMesh's."""
+    """Reads one or several frames of mmMesh, transmitters in firing order.
+
+    Args:
+        path: .npy file.
+        config: The radar.
+
+    Returns:
+        Samples in the unit of the file.
+
+    Raises:
+        InputError: If the array does not match.
+    """
     frames = "frame," if read_npy(path, mapped=True).ndim == len(ADC_SHAPE) + 1 else ""
     return read_adc_npy(path, config, f"{frames}tx,rx,loop,sample")
 
 
 def read_rf_genesis(path: Path, config: RadarConfig) -> AdcCube:
-    """Reads samples of RF-Genesis with their timing: chirps spread over the whole frame, transmitters simultaneous.
+    """Reads samples of RF-Genesis, whose chirps are spread over the entire frame with simultaneous transmitters.
 
-    The returned configuration has the idle time that this implies; its cube needs no TDM compensation. Raises
-    InputError where the array is not RF-Genesis's.
+    Args:
+        path: .npy file.
+        config: The radar.
+
+    Returns:
+        Samples; the idle time of their radar is that implied by RF-Genesis, and they need no TDM compensation.
+
+    Raises:
+        InputError: If the array does not match.
     """
     adc = read_adc_npy(path, config, "frame,tx,rx,loop,sample")
     chirp_s = config.frame_period_s / (config.num_loops * config.num_tx)
@@ -85,10 +124,17 @@ def read_rf_genesis(path: Path, config: RadarConfig) -> AdcCube:
 
 
 def read_hupr(path: Path, config: RadarConfig) -> RadarCube:
-    """Reads one frame, or a folder of frames in the order of their names; Doppler bins omitted by HuPR are zero.
+    """Reads one frame of HuPR, or a folder of frames in the order of their names.
 
-    The antennas' phases are those of the recording, without TDM compensation; values are in counts of the converter
-    (or HuPR's unit). Raises InputError where an array is not HuPR's or the radar cannot have made it.
+    Args:
+        path: .npy file or folder.
+        config: The radar, with 64 range bins, 3 transmitters and 4 receivers.
+
+    Returns:
+        Cube in ADC counts (or HuPR's unit) without TDM compensation; Doppler bins that HuPR omits are zero.
+
+    Raises:
+        InputError: If an array is not HuPR's, or the radar does not match.
     """
     paths = sorted(path.glob("*.npy")) if path.is_dir() else [path]
     if not paths:
@@ -101,7 +147,7 @@ def read_hupr(path: Path, config: RadarConfig) -> RadarCube:
         )
     values = np.zeros((len(paths), num_range, config.num_loops, config.num_antennas), np.complex64)
     first = config.num_loops // 2 - kept // 2
-    # a tone of amplitude a has the peak a, as in our own cubes
+    # normalised so that a tone of amplitude a peaks at a, as in our own cubes
     weight = 1 / (config.num_samples * config.num_loops)
     for frame, name in enumerate(paths):
         values[frame, :, first : first + kept] = weight * _hupr_antennas(name)
@@ -109,7 +155,7 @@ def read_hupr(path: Path, config: RadarConfig) -> RadarCube:
 
 
 def _hupr_antennas(path: Path) -> Complex[np.ndarray, "range doppler antenna"]:
-    """Inverts a frame's angle FFTs."""
+    """Inverts the angle FFTs of one frame."""
     array = read_npy(path, mapped=True)
     if array.shape != HUPR_SHAPE or array.dtype.kind != "c":
         raise InputError(f"{path} holds {array.dtype} of shape {array.shape}; HuPR's are complex {HUPR_SHAPE}")
@@ -128,7 +174,7 @@ def _hupr_antennas(path: Path) -> Complex[np.ndarray, "range doppler antenna"]:
     return out.reshape(*channels.shape[:2], -1).transpose(1, 0, 2)
 
 
-# project: reader of its arrays, (path, radar) -> samples or cube
+# reader per project, (path, radar) -> samples or cube
 LAYOUTS: dict[str, Callable[[Path, RadarConfig], AdcCube | RadarCube]] = {
     "hupr": read_hupr,
     "mmmesh": read_mmmesh,

@@ -18,17 +18,17 @@ from mmweaver.io.ti_firmware import read_ti_firmware
 
 
 def load_radar(name_or_path: str) -> RadarConfig:
-    """The radar that a name or file stands for.
+    """Loads a radar by preset name or from a file.
 
     Args:
-        name_or_path: A preset, a TI .cfg, an mmWave Studio .json or .lua, or the .json of a RadarConfig. Options may
-            follow: "profile.cfg#subframe=1;antennas=aop;lanes=4" (`io.radar_options`).
+        name_or_path: Name of a preset, or path of a TI .cfg, an mmWave Studio .json or .lua, or the .json of a
+            RadarConfig. Options may follow: "profile.cfg#subframe=1;antennas=aop;lanes=4" (`io.radar_options`).
 
     Returns:
         The radar.
 
     Raises:
-        InputError: where it is none of them, or the file describes no possible radar.
+        InputError: If it is none of these, or the file describes an impossible radar.
     """
     name_or_path, options = split_radar(name_or_path)
     if name_or_path in PRESETS:
@@ -44,9 +44,16 @@ def load_radar(name_or_path: str) -> RadarConfig:
 
 
 def load_firmware(name_or_path: str) -> FirmwareSettings:
-    """The point-cloud settings of a TI .cfg or of a preset that has its own, else the IWR1443 demo's defaults.
+    """Loads the point-cloud settings of the firmware.
 
-    Raises InputError where the .cfg does not hold them.
+    Args:
+        name_or_path: As in `load_radar`.
+
+    Returns:
+        Settings of the TI .cfg or of the preset; otherwise the defaults of the IWR1443 demo.
+
+    Raises:
+        InputError: If a .cfg lacks them.
     """
     path = None if name_or_path in PRESETS else cfg_path(name_or_path)
     return FIRMWARE.get(split_radar(name_or_path)[0], FirmwareSettings()) if path is None else read_ti_firmware(path)
@@ -60,7 +67,7 @@ def _read_json_radar(path: Path, options: RadarOptions) -> RadarConfig:
         return options.applied(RadarConfig.from_values(values))
 
 
-# suffix: reader of a radar's file, (path, options) -> radar
+# reader per file suffix, (path, options) -> radar
 RADAR_FILES: dict[str, Callable[[Path, RadarOptions], RadarConfig]] = {
     ".cfg": read_ti_cfg,
     ".json": _read_json_radar,
@@ -69,7 +76,14 @@ RADAR_FILES: dict[str, Callable[[Path, RadarOptions], RadarConfig]] = {
 
 
 def describe_radar(config: RadarConfig) -> str:
-    """A table of chirp, array, resolutions and limits, in customary units."""
+    """Formats chirp, array, resolutions and limits of a radar as a table in customary units.
+
+    Args:
+        config: The radar.
+
+    Returns:
+        Text of several lines.
+    """
     rows = [*_chirp_rows(config), *_array_rows(config), *_limit_rows(config), *_data_rows(config)]
     rows += [("note", text) for text in config.notes]
     width = max(len(name) for name, _ in rows)

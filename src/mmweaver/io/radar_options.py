@@ -1,4 +1,4 @@
-"""What may follow the name of a radar: `profile.cfg#subframe=1;antennas=aop;lanes=4`."""
+"""Options after the name of a radar: `profile.cfg#subframe=1;antennas=aop;lanes=4`."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,14 +15,30 @@ EXAMPLE = '{"tx": [[0, 0], [4, 0]], "rx": [[0, 0], [1, 0], [2, 0], [3, 0]]}'
 
 @dataclass(frozen=True, kw_only=True)
 class RadarOptions:
-    """Choices that a radar's file leaves open; None keeps what the file says."""
+    """Choices that a radar file leaves open or that override it; None keeps the file's.
+
+    Attributes:
+        sub_frame: Index of a sub-frame of an advanced frame.
+        antennas: Antenna table of the board.
+        lanes: LVDS lanes of a DCA1000 recording.
+    """
 
     sub_frame: int | None = None
     antennas: AntennaTable | None = None
     lanes: int | None = None
 
     def applied(self, config: RadarConfig) -> RadarConfig:
-        """A preset or radar.json with other antennas or lanes. Raises InputError for what does not fit."""
+        """Applies antennas and lanes to a preset or a radar.json.
+
+        Args:
+            config: The radar.
+
+        Returns:
+            The modified radar.
+
+        Raises:
+            InputError: If a sub-frame is given, or the antenna table does not match.
+        """
         if self.sub_frame is not None:
             raise InputError(f"radar {config.name!r} has no sub-frames; leave out --radar-set subframe=N")
         if self.lanes is not None:
@@ -44,7 +60,17 @@ class RadarOptions:
 
 
 def split_radar(name: str) -> tuple[str, RadarOptions]:
-    """The name or file of a radar, and the options behind its last #. Raises InputError for options it cannot have."""
+    """Splits a radar's name from its options.
+
+    Args:
+        name: Name or path, optionally followed by "#" and options.
+
+    Returns:
+        Name or path, and the options.
+
+    Raises:
+        InputError: If an option is unknown or malformed.
+    """
     path, mark, rest = name.rpartition("#")
     if not mark or "=" not in rest:
         return name, RadarOptions()
@@ -65,7 +91,16 @@ def split_radar(name: str) -> tuple[str, RadarOptions]:
 def joined_radar(
     name: str, *, sub_frame: int | None = None, antennas: str | None = None, lanes: int | None = None
 ) -> str:
-    """The inverse of `split_radar`, for the command line.
+    """Appends options to a radar's name; inverse of `split_radar`.
+
+    Args:
+        name: Name or path.
+        sub_frame: Index of a sub-frame.
+        antennas: Name of a board or path of a table.
+        lanes: LVDS lanes.
+
+    Returns:
+        Name with options.
 
     >>> joined_radar("profile.cfg", sub_frame=1, lanes=4)
     'profile.cfg#subframe=1;lanes=4'
@@ -76,7 +111,17 @@ def joined_radar(
 
 
 def read_antennas(name_or_path: str) -> AntennaTable:
-    """A board's table by its name, or a JSON with places (x, z) in half wavelengths. Raises InputError."""
+    """Loads an antenna table.
+
+    Args:
+        name_or_path: Name of a known board, or path of a .json with positions (x, z) in half wavelengths.
+
+    Returns:
+        The table.
+
+    Raises:
+        InputError: If the name is unknown or the file is malformed.
+    """
     path = Path(name_or_path)
     if name_or_path in ANTENNAS or path.suffix.lower() != ".json":
         return ANTENNAS[name_or_path]

@@ -1,4 +1,4 @@
-"""Raw ADC samples in a .npy file whose axes are named."""
+"""Raw ADC samples in a .npy file with named axes."""
 
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from mmweaver.core.safe_files.array_checks import ArrayChecks
 from mmweaver.core.safe_files.safe_arrays import read_npy
 from mmweaver.io.dca1000 import by_transmitter, upright
 
-# The dimensions that an axis combines, the slowest first; transmitters in firing order.
+# Dimensions that an axis combines, slowest first; transmitters in firing order.
 DIMENSIONS = {
     "frame": ("frame",),
     "loop": ("loop",),
@@ -22,27 +22,27 @@ DIMENSIONS = {
     "antenna": ("tx", "rx"),
     "vrx": ("tx", "rx"),
 }
-MAX_SAMPLE = 1e12  # whatever the unit; its powers and sums stay finite in float32
+MAX_SAMPLE = 1e12  # in any unit; powers and sums stay finite in float32
 ORDER = ("frame", "loop", "tx", "rx", "sample")
 
 
 def read_adc_npy(path: Path | str, config: RadarConfig, axes: str, *, frames: slice = slice(None)) -> AdcCube:
-    """Reads samples of an array whose axes are named.
+    """Reads samples from an array with named axes.
 
     Args:
         path: The file. Real samples must be real numbers; their mean over each chirp is removed, and int16 stored as
             uint16 (values above 32767) is converted back.
         config: The radar.
         axes: Names in order, such as "frame,loop,tx,rx,sample" or "loop,antenna,sample". `tx` is in firing order
-            (`config.tx_order`; of a coded radar its chirps), `antenna` (or `vrx`) = tx * num_rx + rx and
-            `chirp` = loop * num_tx + tx, with that same tx. An axis that is not named has size 1.
-        frames: Stretch of frames; where "frame" is the first axis, nothing else is read.
+            (`config.tx_order`; slots of a coded radar), `antenna` (or `vrx`) = tx * num_rx + rx and
+            `chirp` = loop * num_tx + tx with the same tx. Axes that are not named have size 1.
+        frames: Range of frames; if "frame" is the first axis, only these are read. Default: all.
 
     Returns:
-        Samples in the file's unit, so their scale is unknown (nan).
+        Samples in the unit of the file; the scale is unknown (nan).
 
     Raises:
-        InputError: where the file is not such an array.
+        InputError: If the array does not match the axes and the radar.
     """
     return adc_of_array(Path(path), read_npy(path, mapped=frames != slice(None)), config, axes, frames)
 
@@ -50,7 +50,21 @@ def read_adc_npy(path: Path | str, config: RadarConfig, axes: str, *, frames: sl
 def adc_of_array(
     path: Path, values: np.ndarray, config: RadarConfig, axes: str, frames: slice = slice(None)
 ) -> AdcCube:
-    """The samples of an array of a file, as in `read_adc_npy`."""
+    """Converts an array from a file to samples.
+
+    Args:
+        path: The file, for error messages.
+        values: The array.
+        config: The radar.
+        axes: Names of the axes, as in `read_adc_npy`.
+        frames: Range of frames. Default: all.
+
+    Returns:
+        Samples in the unit of the array.
+
+    Raises:
+        InputError: If the array does not match the axes and the radar.
+    """
     names = [name.strip() for name in axes.split(",")]
     sizes = {"loop": config.num_loops, "tx": config.num_slots, "rx": config.num_rx, "sample": config.num_samples}
     parts = _checked_axes(path, names, values.shape, sizes)

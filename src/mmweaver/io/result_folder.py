@@ -1,4 +1,4 @@
-"""The folder of results: the same files and pictures for generated and recorded signals."""
+"""The result folder: the same files and pictures for generated and recorded signals."""
 
 import dataclasses
 import json
@@ -54,12 +54,25 @@ def save_results(
     extra: dict[str, str] | None = None,
     more: Callable[[Path], object] | None = None,
 ) -> dict[str, Any]:
-    """Writes all files into the folder `out`, or none; returns the content of meta.json.
+    """Writes a result folder completely or not at all.
 
-    `pictures`: what draws each, by file name. Where `adc` is given it is written as `adc_data.bin`, I or Q first as
-    `iq_order` says (default: as the radar does). `extra`: further text files, by name. `more` writes further files that
-    FILES knows into a folder. Raises InputError where `out` holds other files and `overwrite` is not set, or where it
-    cannot be written.
+    Args:
+        out: The folder.
+        view: Cube, points and poses with the data of the figures.
+        meta: Content of meta.json; files and timings are added.
+        adc: Raw samples, written as `adc_data.bin`. Default: not written.
+        iq_order: I/Q order of `adc_data.bin`. Default: the radar's.
+        overwrite: Whether `out` may contain files. Default: False.
+        stages: Timer of the job. Default: a new one.
+        pictures: Function that draws each picture, by file name. Default: none.
+        extra: Further text files by name. Default: none.
+        more: Function that writes further files listed in `FILES` into a folder. Default: none.
+
+    Returns:
+        Content of meta.json.
+
+    Raises:
+        InputError: If `out` contains files without `overwrite`, or cannot be written.
     """
     stages = stages or Stages()
     with staged_folder(Path(out), overwrite=overwrite) as stage:
@@ -69,10 +82,10 @@ def save_results(
             write_points_npz(stage / "points.npz", view.points)
             if view.poses:
                 write_pose_npz(stage / "pose.npz", *view.poses)
-            elif view.aligned is not None:  # a generated room with nobody in it; of a recording nothing is known
+            elif view.aligned is not None:  # a generated empty room; recordings have no ground truth
                 write_pose_npz(stage / "pose.npz", time_s=view.cube.grid.frame_time_s)
             if adc is not None:
-                # Simulated samples are whole counts of the radar's own converter: written so, nothing is lost.
+                # simulated samples are integer ADC counts of this radar: with its own scale they are written losslessly
                 own = None if math.isnan(adc.scale) else adc.scale / adc.config.adc_count_sqrt_mw
                 counts = write_bin(stage / "adc_data.bin", adc, iq_order=iq_order, counts_per_unit=own)
                 meta["adc_data_bin"] = {
@@ -98,12 +111,12 @@ def save_results(
 
 
 def radar_folder(number: int) -> str:
-    """The folder of one of several radars in a folder of results; the first is number 1."""
+    """Subfolder of one of several radars in a result folder, numbered from 1."""
     return f"radar_{number}"
 
 
 def radar_meta(config: RadarConfig) -> dict[str, Any]:
-    """The radar and its resolutions, for meta.json."""
+    """Radar and its resolutions for meta.json."""
     return {
         "radar": config.to_values(),
         "resolution": {
@@ -116,7 +129,13 @@ def radar_meta(config: RadarConfig) -> dict[str, Any]:
 
 
 def plain(value: Any) -> Any:
-    """Records, arrays and tuples as JSON types; nan and infinity, which JSON lacks, become None.
+    """Converts records, arrays and tuples to JSON types.
+
+    Args:
+        value: Any value; nan and infinity, which JSON lacks, become None, and other objects their str().
+
+    Returns:
+        Dicts, lists, numbers, texts, booleans and None.
 
     >>> plain({"at": (1, np.float32(0.5)), "noise": float("nan")})
     {'at': [1, 0.5], 'noise': None}
@@ -137,5 +156,12 @@ def plain(value: Any) -> Any:
 
 
 def file_digest(path: str | Path) -> dict[str, str]:
-    """Path and sha256 of an input file, for meta.json. Raises InputError where it cannot be read."""
+    """Path and SHA-256 of an input file, for meta.json.
+
+    Args:
+        path: The file.
+
+    Raises:
+        InputError: If it cannot be read.
+    """
     return {"path": str(path), "sha256": sha256_of_file(Path(path))}

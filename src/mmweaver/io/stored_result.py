@@ -1,4 +1,4 @@
-"""A result folder of `mmweaver generate` or `mmweaver process`, read back."""
+"""Reads back a result folder of `mmweaver generate` or `mmweaver process`."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -17,17 +17,17 @@ ADC_FILE = "adc_data.bin"
 
 @dataclass(frozen=True, kw_only=True)
 class StoredResult:
-    """What a result folder holds."""
+    """Content of a result folder."""
 
     folder: Path
     cube: RadarCube
     points: PointCloud
-    poses: tuple[PoseSequence, ...]  # none for a recording
+    poses: tuple[PoseSequence, ...]  # empty for recordings
     meta: dict[str, Any]
 
     @property
     def title(self) -> str:
-        """The sentences and the radar."""
+        """Sentences and radar, for figures."""
         return f"{self.text}   ({self.cube.config.name})".strip()
 
     @property
@@ -38,7 +38,11 @@ class StoredResult:
 
     @cached_property
     def adc(self) -> AdcCube:
-        """The raw samples. Raises InputError where the folder holds none."""
+        """Raw samples.
+
+        Raises:
+            InputError: If the folder has no adc_data.bin.
+        """
         file = self.folder / ADC_FILE
         if not file.is_file():
             raise InputError(f"{self.folder} holds no {ADC_FILE}, which this format needs; generate it with --bin")
@@ -49,7 +53,17 @@ class StoredResult:
 
 
 def read_result(folder: Path) -> StoredResult:
-    """Reads a result folder. Raises InputError where it is none, or damaged."""
+    """Reads a result folder.
+
+    Args:
+        folder: The folder.
+
+    Returns:
+        Its content; raw samples are read when first used.
+
+    Raises:
+        InputError: If it is not a result folder, or damaged.
+    """
     check_exists(folder, "a folder of mmweaver generate or mmweaver process")
     if not (folder / "radar.npz").is_file():
         raise InputError(f"{folder} holds no radar.npz; give a folder of mmweaver generate or mmweaver process")
@@ -67,7 +81,7 @@ def read_result(folder: Path) -> StoredResult:
 
 
 def _check_meta(path: Path, meta: dict[str, Any]) -> None:
-    """Raises InputError where what is used of a meta.json is of another type."""
+    """Raises InputError if an entry of meta.json that is used has the wrong type."""
     text, written = meta.get("text") or "", meta.get("adc_data_bin") or {}
     texts = text if isinstance(text, list) else [text]
     if not all(isinstance(one, str) for one in texts):

@@ -1,13 +1,13 @@
-"""A recording that grows: folders of some frames each, written one after the other, readable at any time.
+"""A growing recording: subfolders of a few frames each, written in sequence and readable at any time.
 
-    OUT/radar.json, meta.json        the radar, and what all parts share; meta.json counts the frames at the end
+    OUT/radar.json, meta.json        radar and metadata common to all parts; meta.json has the final frame count
     OUT/parts/00000000/              radar.npz, points.npz, pose.npz, radar.json, SHA256SUMS of the frames from 0 on
-    OUT/parts.jsonl                  a line a part: first frame, frames, sentence, what was assumed
-    OUT/adc_data.bin                 raw samples of all frames, where they are asked for
+    OUT/parts.jsonl                  one line per part: first frame, number of frames, sentence, assumptions
+    OUT/adc_data.bin                 raw samples of all frames, if requested
     OUT/SHA256SUMS                   of these files, once the stream has ended
 
-A part gets its name when all of it is on the disk, so that a kill leaves whole parts. Memory does not grow with the
-length. Reference: docs/decisions/streams.md.
+A part is renamed into place when it is completely on disk, so a kill leaves complete parts only. Memory use does not
+grow with the length. Reference: docs/decisions/streams.md.
 """
 
 import json
@@ -31,16 +31,26 @@ from mmweaver.io.npz_files import read_radar_npz, write_points_npz, write_pose_n
 from mmweaver.io.result_folder import plain
 
 PARTS, LIST, BIN, META = "parts", "parts.jsonl", "adc_data.bin", "meta.json"
-LARGEST_BYTES = 8_000_000_000  # of a cube that is read at once
+LARGEST_BYTES = 8_000_000_000  # of a cube read at once
 
 
 def is_stream(folder: Path) -> bool:
-    """Whether a folder holds a recording in parts."""
+    """Whether a folder contains a recording in parts."""
     return (folder / PARTS).is_dir() and (folder / LIST).is_file()
 
 
 def parts_of(folder: Path) -> list[Path]:
-    """The whole parts of a recording in their order. Raises InputError where there is none, or one is missing."""
+    """Lists the complete parts of a recording.
+
+    Args:
+        folder: The recording.
+
+    Returns:
+        Folders of the parts in order.
+
+    Raises:
+        InputError: If there is none yet.
+    """
     found = sorted(part for part in (folder / PARTS).iterdir() if part.is_dir() and part.name.isdecimal())
     if not found:
         raise InputError(f"{folder} holds no whole part yet; let the stream run longer")
@@ -48,7 +58,17 @@ def parts_of(folder: Path) -> list[Path]:
 
 
 def listed_parts(folder: Path) -> list[Path]:
-    """The parts that parts.jsonl lists; a kill may have left half a line at its end. Raises InputError."""
+    """Lists the parts named in parts.jsonl; an incomplete last line, left by a kill, is skipped.
+
+    Args:
+        folder: The recording.
+
+    Returns:
+        Folders of the parts.
+
+    Raises:
+        InputError: If parts.jsonl cannot be read.
+    """
     found = []
     for line in read_text(folder / LIST).splitlines():
         try:
@@ -59,9 +79,17 @@ def listed_parts(folder: Path) -> list[Path]:
 
 
 def read_stream_cube(folder: Path, frames: slice = slice(None)) -> RadarCube:
-    """The frames of all whole parts, or a stretch of them, as one cube; parts without any of them are not read.
+    """Reads frames of a recording as one cube; parts outside the range are not read.
 
-    Raises InputError where a part is missing or damaged, or memory does not hold the cube.
+    Args:
+        folder: The recording.
+        frames: Range of frames. Default: those of all complete parts.
+
+    Returns:
+        The cube.
+
+    Raises:
+        InputError: If a part is missing or damaged, no frame is selected, or the cube is larger than 8 GB.
     """
     first, last = frames.start or 0, math.inf if frames.stop is None else frames.stop
     parts = parts_of(folder)
@@ -90,15 +118,29 @@ def read_stream_cube(folder: Path, frames: slice = slice(None)) -> RadarCube:
 
 
 def num_frames_of_stream(folder: Path) -> int:
-    """Number of frames of all whole parts. Raises InputError where there is none."""
+    """Number of frames of all complete parts.
+
+    Args:
+        folder: The recording.
+
+    Raises:
+        InputError: If there is no complete part.
+    """
     last = parts_of(folder)[-1]
     return int(last.name) + len(read_radar_npz(last / "radar.npz").values)
 
 
 class StreamFolder:
-    """Writes a recording in parts; `add` one after the other, then `finish`."""
+    """Writes a recording in parts: `add` for each part, then `finish`."""
 
     def __init__(self, out: Path, meta: dict[str, Any], *, iq_order: str | None = None) -> None:
+        """Starts a recording; files are written with the first part.
+
+        Args:
+            out: The folder.
+            meta: Content of meta.json common to all parts.
+            iq_order: I/Q order of adc_data.bin. Default: the radar's.
+        """
         self.out, self.meta, self.iq_order = out, meta, iq_order
         self.frames, self.parts, self.skipped = 0, 0, 0
         self._counts: float | None = None
@@ -111,7 +153,18 @@ class StreamFolder:
         adc: AdcCube | None,
         said: dict[str, Any],
     ) -> None:
-        """Writes one more part. Raises InputError where it cannot be written."""
+        """Writes one more part.
+
+        Args:
+            cube: Cube of the part.
+            points: Its point cloud.
+            poses: People at its frames.
+            adc: Its raw samples, or None.
+            said: Further entries of its line in parts.jsonl, such as the sentence.
+
+        Raises:
+            InputError: If it cannot be written.
+        """
         if not self.parts:
             self._write_text("radar.json", cube.config.to_json())
             self._write_meta()
@@ -127,7 +180,11 @@ class StreamFolder:
         self.frames, self.parts = self.frames + len(cube.values), self.parts + 1
 
     def finish(self) -> dict[str, Any]:
-        """Writes how long it became, and the checksums; returns the content of meta.json."""
+        """Completes meta.json and writes the checksums.
+
+        Returns:
+            Content of meta.json.
+        """
         self._write_meta()
         with atomic_file(self.out / SUMS_FILE) as temporary:
             write_sums(self.out, names=("radar.json", META, LIST, BIN), target=temporary)
@@ -162,7 +219,7 @@ class StreamFolder:
 
 
 def sentences_of(lines: Iterable[str]) -> Iterable[str]:
-    """The sentences of lines as they come: empty ones and those that begin with # are left out."""
+    """Yields stripped lines as they arrive, without empty lines and comments (#)."""
     for line in lines:
         text = line.strip()
         if text and not text.startswith("#"):

@@ -1,6 +1,6 @@
-"""mmWave Studio's Lua scripts: the ar1 calls that set a radar up, as the lines of a .cfg.
+"""mmWave Studio's Lua scripts: the ar1 calls that configure a radar, converted to lines of a .cfg.
 
-Arguments are numbers, or names that the script gives numbers to before. Reference: TI mmWave Studio User Guide, and its
+Arguments are numbers, or names to which the script assigns a number. Reference: TI mmWave Studio User Guide and its
 example scripts (DataCaptureDemo_xWR.lua).
 """
 
@@ -22,7 +22,7 @@ ASSIGNMENT = re.compile(
     r"^[ \t]*(?:local[ \t]+)?([A-Za-z_]\w*)[ \t]*=[ \t]*(-?\d+(?:\.\d*)?(?:[eE]-?\d{1,2})?)[ \t]*;?[ \t\r]*$",
     re.MULTILINE,
 )
-# call: how many arguments are used
+# number of arguments used per call
 NEEDED = {"ChanNAdcConfig": 10, "ProfileConfig": 15, "ChirpConfig": 10, "FrameConfig": 5}
 OPTIONAL = {"LVDSLaneConfig": 5, "LvdsLaneConfig": 5}
 REFUSED = {
@@ -36,15 +36,18 @@ TX, FIRST_RX, NUM_RX = 3, 3, 4
 
 
 def read_studio_script(path: Path | str, options: RadarOptions | None = None) -> RadarConfig:
-    """The radar that a script sets up, named after the file; the last call of a kind counts, of chirps all.
+    """Reads the radar that a script configures; the last call of a kind counts, except for chirps, of which all count.
 
     Args:
-        path: The file.
-        options: The board's antennas and lanes where they differ.
+        path: The file, after which the radar is named.
+        options: Antennas and lanes of the board. Default: as in the script.
+
+    Returns:
+        The radar.
 
     Raises:
-        InputError: where calls are missing or take other things than numbers, chirps differ or cannot be separated, or
-            the radar could not exist.
+        InputError: If calls are missing or have non-numeric arguments, chirps differ or cannot be separated, or the
+            radar is impossible.
     """
     path = Path(path)
     text = _strip_comments(read_text(path, max_bytes=MAX_BYTES, errors="replace"))
@@ -68,7 +71,7 @@ def read_studio_script(path: Path | str, options: RadarOptions | None = None) ->
 
 
 def _strip_comments(text: str) -> str:
-    """The script without -- and --[[ ]], lines kept."""
+    """Removes -- and --[[ ]] comments; line numbers are kept."""
     kept, at = [], 0
     while (start := text.find("--", at)) >= 0:
         kept.append(text[at:start])
@@ -94,7 +97,7 @@ def _numbers(path: Path, found: re.Match[str], names: dict[str, float], needed: 
 
 
 def _cfg_lines(calls: dict[str, list[Line]]) -> Lines:
-    """The calls as commands of a .cfg."""
+    """Converts calls to commands of a .cfg."""
     channels, frame = calls["ChanNAdcConfig"][-1], calls["FrameConfig"][-1]
     tx_mask, rx_mask = _mask(channels.values[:TX]), _mask(channels.values[FIRST_RX : FIRST_RX + NUM_RX])
     bits, samples, swap = channels.values[FIRST_RX + NUM_RX : FIRST_RX + NUM_RX + 3]
@@ -113,7 +116,7 @@ def _cfg_lines(calls: dict[str, list[Line]]) -> Lines:
 
 
 def _profile(values: tuple[float, ...]) -> tuple[float, ...]:
-    """profileCfg: number, GHz, idle, ADC start, ramp end in us, back-off, phases, slope, start, samples, rate, gain."""
+    """profileCfg: id, GHz, idle, ADC start, ramp end in us, back-off, phases, slope, TX start, samples, rate, gain."""
     code = sum(round(degrees / SHIFTER_DEG) % 64 << (8 * tx + 2) for tx, degrees in enumerate(values[8:11]))
     gain_db = values[17] if len(values) > 17 else 30.0
     return (*values[:5], 0.0, float(code), *values[11:15], 0.0, 0.0, gain_db)

@@ -1,8 +1,8 @@
-"""Which board a TI .cfg is for: its antenna lines, else the platform that its comments name.
+"""Antennas of the board of a TI .cfg: from its antenna lines, else from the platform named in its comments.
 
-A platform is often just xWR68xx, which comes with four kinds of antennas; channel phases (compRangeBiasAndRxChanPhase)
-that turn the receivers of an AOP or an ODS over then tell which. Reference: TI, 3D People Tracking tuning guide
-(antGeometry0, antGeometry1, antPhaseRot); mmWave MCU+ SDK (antGeometryCfg); the header comments of TI's mmWave Demo
+A platform is often just xWR68xx, which exists with four antenna layouts; channel phases (compRangeBiasAndRxChanPhase)
+that invert the receivers of an AOP or ODS then identify it. Reference: TI, 3D People Tracking tuning guide
+(antGeometry0, antGeometry1, antPhaseRot); mmWave MCU+ SDK (antGeometryCfg); header comments of TI's mmWave Demo
 Visualizer.
 """
 
@@ -13,15 +13,21 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import ANTENNAS
 
 NUM_RX = 4
-TURNED = tuple(ANTENNAS[board] for board in ("aop", "ods"))  # boards that feed receivers from both sides
+TURNED = tuple(ANTENNAS[board] for board in ("aop", "ods"))  # boards with inverted receivers
 
 
 def antennas_of_cfg(values: dict[str, tuple[float, ...]], platform: str) -> AntennaTable | None:
-    """The table that a .cfg gives or names; None without either. Raises InputError for lines of no board.
+    """Determines the antennas of a .cfg.
 
     Args:
         values: Numbers of each command.
-        platform: What the comments name, in small letters and digits.
+        platform: Platform named in the comments, lower-case letters and digits only.
+
+    Returns:
+        Antenna table; None if the file does not identify it.
+
+    Raises:
+        InputError: If the antenna lines do not describe a board.
     """
     if "antGeometry0" in values and "antGeometry1" in values:
         column, row = np.array(values["antGeometry0"]), np.array(values["antGeometry1"])
@@ -29,7 +35,7 @@ def antennas_of_cfg(values: dict[str, tuple[float, ...]], platform: str) -> Ante
             raise InputError("antGeometry0 and antGeometry1 differ in length")
         turned = values.get("antPhaseRot", (1.0,) * len(row))
         inverted = tuple(rx for rx, sign in enumerate(turned[:NUM_RX]) if sign < 0)
-        if len(turned) >= NUM_RX and turned[0] < 0:  # all the other way round means the same
+        if len(turned) >= NUM_RX and turned[0] < 0:  # a common sign is irrelevant
             inverted = tuple(rx for rx in range(NUM_RX) if rx not in inverted)
         places = np.stack([-column, row], axis=1)
         return table_of_virtual_array("antGeometry", places, NUM_RX, inverted, "antGeometry0/1 of the .cfg")
@@ -49,7 +55,7 @@ def antennas_of_cfg(values: dict[str, tuple[float, ...]], platform: str) -> Ante
 
 
 def _turned_receivers(compensation: tuple[float, ...]) -> tuple[int, ...]:
-    """The receivers that the channel phases turn over, the same for each transmitter; () where they are other ones."""
+    """Receivers inverted by the channel phases, equal for all transmitters; () for any other phases."""
     factors = np.array(compensation[1:])
     if not factors.size or factors.size % (2 * NUM_RX):
         return ()

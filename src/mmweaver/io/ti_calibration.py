@@ -1,8 +1,8 @@
-"""compRangeBiasAndRxChanPhase of a TI .cfg: range bias in m, then real and imaginary part of each antenna pair.
+"""compRangeBiasAndRxChanPhase of a TI .cfg: range bias in m, then real and imaginary part per antenna pair.
 
-Pairs are those of the board, transmitter by transmitter; a recorded sample is multiplied by its pair's factor and the
-bias subtracted from its range. Where receivers are fed from the other side the factors undo that, too (TI's visualizer
-writes 1 0 -1 0 for the AOP), unless an antPhaseRot does. Reference: mmWave SDK User Guide,
+Pairs are those of the board, transmitter by transmitter; recorded samples are multiplied by the factor of their pair,
+and the bias is subtracted from the range. On boards with inverted receivers the factors also undo the inversion (TI's
+visualizer writes 1 0 -1 0 for the AOP), unless antPhaseRot does. Reference: mmWave SDK User Guide,
 "compRangeBiasAndRxChanPhase".
 """
 
@@ -19,9 +19,16 @@ NUM_RX = 4
 
 
 def read_ti_calibration(name_or_path: str) -> ChannelCalibration | None:
-    """What a .cfg (options may follow its name) compensates; None where it is no .cfg, or compensates nothing.
+    """Reads the channel calibration of a .cfg.
 
-    Raises InputError where the line is too short for the transmitters that fire.
+    Args:
+        name_or_path: Path of a .cfg, with options as in `load_radar`, or any other radar.
+
+    Returns:
+        Calibration of the transmitters that fire; None if it is not a .cfg, or has no effect.
+
+    Raises:
+        InputError: If the line is too short for the transmitters that fire, or contains a zero factor.
     """
     path = cfg_path(name_or_path)
     lines = {} if path is None else ti_cfg_lines(path, {COMMAND: 3})

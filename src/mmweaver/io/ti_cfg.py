@@ -16,7 +16,7 @@ from mmweaver.io.ti_antennas import antennas_of_cfg
 from mmweaver.io.ti_chirps import MAX_TX, SHIFTER_DEG, TiChirp, TiFrame, TiProfile, TiSetup, radar_from_ti
 
 MAX_CFG_BYTES = 2**20
-# command: minimum count of numbers that follow it (later SDKs append more)
+# minimum number of arguments per command (later SDKs append more)
 NEEDED = {"channelCfg": 2, "adcCfg": 2, "profileCfg": 14, "chirpCfg": 8}
 OPTIONAL = {
     "frameCfg": 6,
@@ -39,28 +39,36 @@ REFUSED = {
 }
 OTHER_DEVICES = {"chirpComnCfg": "a low-power xWRL device"}
 ADC_FORMATS = {0: False, 1: True, 2: True}  # adcCfg's second number: real, complex 1x, complex 2x
-MCU_FRAME_NUMBERS = 8  # of frameCfg in the MCU+ SDK, which has the number of samples before the period
+MCU_FRAME_NUMBERS = 8  # frameCfg of the MCU+ SDK, which inserts the number of samples before the period
 CHIRP_VARIATIONS = ("start frequency", "slope", "idle time", "ADC start time")
-FOUR_LANE_PLATFORMS = ("12xx", "14xx", "1243", "1443")  # whose DCA1000 recordings have four lanes
+FOUR_LANE_PLATFORMS = ("12xx", "14xx", "1243", "1443")  # devices with four LVDS lanes
 
 
 @dataclass(frozen=True)
 class Line:
-    """A command with its numbers, and its line number in the file."""
+    """A command with its numbers and its line number in the file."""
 
     number: int
     command: str
     values: tuple[float, ...]
 
     def whole(self, at: int) -> int:
-        """Number `at` as an integer. Raises InputError where it is not one."""
+        """Number `at` as an integer.
+
+        Raises:
+            InputError: If it is not an integer.
+        """
         value = self.values[at]
         if value != int(value):
             raise InputError(f"line {self.number}: number {at + 1} of {self.command} must be whole, not {value:g}")
         return int(value)
 
     def wholes(self, count: int) -> list[int]:
-        """The first numbers as integers. Raises InputError where they are none."""
+        """The first `count` numbers as integers.
+
+        Raises:
+            InputError: If one is not an integer.
+        """
         return [self.whole(at) for at in range(count)]
 
 
@@ -68,15 +76,18 @@ Lines = dict[str, list[Line]]  # by command
 
 
 def read_ti_cfg(path: Path | str, options: RadarOptions | None = None) -> RadarConfig:
-    """The radar that a .cfg configures, named after the file.
+    """Reads the radar that a .cfg configures.
 
     Args:
-        path: The file.
-        options: A sub-frame of an advanced frame, and the board's antennas and lanes where they differ.
+        path: The file, after which the radar is named.
+        options: Sub-frame of an advanced frame, antennas and lanes of the board. Default: as in the file.
+
+    Returns:
+        The radar.
 
     Raises:
-        InputError: where the file cannot be read, lines are missing or have too few numbers, chirps differ or cannot
-            be separated, or the radar could not exist.
+        InputError: If the file cannot be read, lines are missing or too short, chirps differ or cannot be separated, or
+            the radar is impossible.
     """
     path = Path(path)
     lines, text = ti_cfg_lines(path), _text(path)
@@ -90,7 +101,14 @@ def read_ti_cfg(path: Path | str, options: RadarOptions | None = None) -> RadarC
 
 
 def refuse_headers(name: str) -> None:
-    """Raises InputError where a .cfg (options may follow its name) puts HSI headers between the recorded samples."""
+    """Refuses recordings with HSI headers between the samples.
+
+    Args:
+        name: Radar as in `load_radar`; only a .cfg is checked.
+
+    Raises:
+        InputError: If lvdsStreamCfg enables headers.
+    """
     path = cfg_path(name)
     for line in [] if path is None else ti_cfg_lines(path).get("lvdsStreamCfg", [])[-1:]:
         if line.values[1] != 0:
@@ -101,15 +119,21 @@ def refuse_headers(name: str) -> None:
 
 
 def cfg_path(name: str) -> Path | None:
-    """The .cfg that a radar's name stands for (options may follow it); None for a preset or another file."""
+    """Path of the .cfg behind a radar's name (options may follow); None for a preset or another file."""
     path = Path(split_radar(name)[0])
     return path if path.suffix.lower() == ".cfg" and path.is_file() else None
 
 
 def adc_buffer(lines: Lines) -> tuple[float, float]:
-    """SampleSwap and interleaving of adcbufCfg; -1 without the line.
+    """Reads SampleSwap and interleaving from adcbufCfg.
 
-    SDK 1 has four numbers (format, swap, interleave, threshold); later versions put the sub-frame before them.
+    SDK 1 has four numbers (format, swap, interleave, threshold); later versions prepend the sub-frame.
+
+    Args:
+        lines: Lines by command.
+
+    Returns:
+        SampleSwap (1: Q first) and interleaving (0: interleaved); -1 if the line is missing.
     """
     if "adcbufCfg" not in lines:
         return -1.0, -1.0
@@ -119,7 +143,7 @@ def adc_buffer(lines: Lines) -> tuple[float, float]:
 
 
 def platform_of(text: str) -> str:
-    """The platform that the comments name, in small letters and digits; "" without one."""
+    """Platform named in the comments, reduced to lower-case letters and digits; "" if there is none."""
     found = re.search(r"%\s*platform\s*:\s*(\S+)", text, re.IGNORECASE)
     return "" if found is None else re.sub(r"[^a-z0-9]", "", found[1].lower())
 
@@ -129,9 +153,17 @@ def _text(path: Path) -> str:
 
 
 def ti_cfg_lines(path: Path, more: dict[str, int] | None = None) -> Lines:
-    """The lines of the radar's commands and of those in `more` (with their minimum count of numbers), by command.
+    """Reads the lines of all known commands.
 
-    Raises InputError as `read_ti_cfg` does.
+    Args:
+        path: The file.
+        more: Further commands with their minimum number of arguments. Default: none.
+
+    Returns:
+        Lines by command.
+
+    Raises:
+        InputError: As in `read_ti_cfg`.
     """
     counts, text = {**NEEDED, **OPTIONAL, **(more or {})}, _text(path)
     if text.lstrip().startswith("{"):
@@ -171,7 +203,18 @@ def _numbers(command: str, words: list[str], needed: int) -> tuple[float, ...]:
 
 
 def setup_of_lines(name: str, lines: Lines) -> TiSetup:
-    """The configuration of a file's commands. Raises InputError as `read_ti_cfg` does."""
+    """Converts the commands of a file to a configuration in TI's units.
+
+    Args:
+        name: Name of the radar.
+        lines: Lines by command.
+
+    Returns:
+        The configuration, without antennas.
+
+    Raises:
+        InputError: As in `read_ti_cfg`.
+    """
     channel, adc = lines["channelCfg"][-1], lines["adcCfg"][-1]
     if adc.whole(1) not in ADC_FORMATS:
         raise InputError(
@@ -220,7 +263,7 @@ def _profile(line: Line) -> TiProfile:
 
 
 def _frames(lines: Lines) -> tuple[list[TiFrame], float]:
-    """The plain frame or the sub-frames, and the period of the whole frame in ms.
+    """The plain frame or the sub-frames, and the period of the entire frame in ms.
 
     subFrameCfg: number, forced profile, first chirp, chirps, loops, burst ms, offset, bursts, repeats, period ms.
     """
@@ -241,7 +284,7 @@ def _frames(lines: Lines) -> tuple[list[TiFrame], float]:
 
 
 def _add_bpm(lines: Lines, setup: TiSetup) -> None:
-    """bpmCfg: sub-frame, enabled, first and second chirp. In the second the last of its transmitters is inverted."""
+    """bpmCfg: sub-frame, enabled, first and second chirp. The second chirp inverts its last transmitter."""
     for line in lines.get("bpmCfg", []):
         index, enabled, _, second = line.wholes(4)
         frames = setup.frames if index == -1 else setup.frames[max(index, 0) :][:1]
@@ -255,12 +298,12 @@ def _add_bpm(lines: Lines, setup: TiSetup) -> None:
 
 
 def _add_ddm(lines: Lines, setup: TiSetup, frame: TiFrame) -> None:
-    """Doppler-division MIMO (AWR2944, AWR2544) of ddmPhaseShiftAntOrder, whose phases replace those of BPM.
+    """Doppler-division MIMO (AWR2944, AWR2544) by ddmPhaseShiftAntOrder, whose phases replace those of BPM.
 
-    The k-th transmitter of the line turns by k of N steps of 360/N degrees from chirp to chirp, N chirps per loop (more
-    than transmitters, which leaves empty bands), as near as its shifter can. The demo counts chirps backwards, because
-    samples turn against the shifter: they are the ramp times the conjugate echo. Source: the demo of TI's MCU+ SDK for
-    the AWR294x and AWR2544, where it sets rlRfPhaseShiftCfg_t.
+    The k-th transmitter of the line advances by k of N steps of 360/N degrees from chirp to chirp, with N chirps per
+    loop (more than transmitters, which leaves empty bands), rounded to the phase shifter's resolution. The demo counts
+    chirps backwards, since samples (ramp times conjugate echo) rotate opposite to the shifter. Source: TI's MCU+ SDK
+    demo for the AWR294x and AWR2544, where it sets rlRfPhaseShiftCfg_t.
     """
     numbers = [number for number in sorted(setup.chirps) if frame.first <= number <= frame.last]
     masks = {setup.chirps[number].tx_mask for number in numbers}

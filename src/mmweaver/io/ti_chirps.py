@@ -1,6 +1,6 @@
-"""The configuration of a TI radar in TI's units, whatever file it came from, and the RadarConfig that follows from it.
+"""Configuration of a TI radar in TI's units, independent of the file format, and its conversion to a RadarConfig.
 
-A file's reader fills a `TiSetup`: profiles, chirps by their index, and the frame or the sub-frames of an advanced one.
+Readers fill a `TiSetup`: profiles, chirps by index, and the frame or the sub-frames of an advanced one.
 """
 
 from dataclasses import dataclass, field
@@ -17,14 +17,14 @@ from mmweaver.io.radar_options import RadarOptions
 
 MAX_TX = 4
 MAX_CHIRPS = 512
-SHIFTER_DEG = 5.625  # a step of the phase shifters
+SHIFTER_DEG = 5.625  # resolution of the phase shifters
 NO_PHASE = (0.0,) * MAX_TX
-Chirp = tuple[complex, ...]  # weight of each of the board's transmitters
+Chirp = tuple[complex, ...]  # weight of each transmitter of the board
 
 
 @dataclass(frozen=True, kw_only=True)
 class TiProfile:
-    """A chirp profile; units are in the names."""
+    """A chirp profile; units are part of the names."""
 
     start_frequency_ghz: float
     idle_time_us: float
@@ -39,7 +39,7 @@ class TiProfile:
 
 @dataclass(frozen=True, kw_only=True)
 class TiChirp:
-    """One chirp: its profile, the transmitters that fire, and their phases in the samples (BPM or shifters)."""
+    """One chirp: profile, active transmitters, and their phases as seen in the samples (BPM or phase shifters)."""
 
     profile: int
     tx_mask: int
@@ -48,7 +48,7 @@ class TiChirp:
 
 @dataclass(frozen=True, kw_only=True)
 class TiFrame:
-    """The chirps of a loop, both ends included, of the frame or of a sub-frame."""
+    """Chirp indices of a loop, first and last inclusive, of the frame or a sub-frame."""
 
     first: int
     last: int
@@ -57,29 +57,43 @@ class TiFrame:
 
 @dataclass(frozen=True, kw_only=True)
 class TiSetup:
-    """A configuration before a sub-frame is chosen."""
+    """Configuration before a sub-frame is selected."""
 
     name: str
     profiles: dict[int, TiProfile]
-    frames: list[TiFrame]  # one, or the sub-frames
+    frames: list[TiFrame]  # one frame, or the sub-frames
     has_sub_frames: bool
-    frame_period_ms: float  # of all sub-frames together
+    frame_period_ms: float  # total of all sub-frames
     rx_mask: int
     tx_mask: int
     complex_samples: bool
     lvds_iq_order: str
     lvds_lanes: int
-    antennas: AntennaTable | None = None  # None: the xWR1843BOOST's, or the AWR2944EVM's with a fourth transmitter
+    antennas: AntennaTable | None = None  # None: xWR1843BOOST, or AWR2944EVM if a fourth transmitter fires
     chirps: dict[int, TiChirp] = field(default_factory=dict)
 
     def add_chirps(self, first: int, last: int, chirp: TiChirp) -> None:
-        """Defines chirps `first` to `last`. Raises InputError for indices that no device has."""
+        """Defines chirps `first` to `last`, inclusive.
+
+        Raises:
+            InputError: If an index exceeds the device's limit.
+        """
         if not 0 <= first <= last < MAX_CHIRPS:
             raise InputError(f"chirps {first} to {last} must lie in 0 to {MAX_CHIRPS - 1}")
         self.chirps.update(dict.fromkeys(range(first, last + 1), chirp))
 
     def chosen_frame(self, sub_frame: int | None) -> int:
-        """Index of the frame that is meant. Raises InputError where it has to be chosen, or there is none such."""
+        """Index of the selected frame.
+
+        Args:
+            sub_frame: Index of a sub-frame; None if the frame is plain.
+
+        Returns:
+            Index into `frames`.
+
+        Raises:
+            InputError: If a sub-frame must be selected, or does not exist.
+        """
         count = len(self.frames)
         if not self.has_sub_frames and sub_frame is not None:
             raise InputError("it has one plain frame and no sub-frames; leave out --radar-set subframe=N")
@@ -90,7 +104,17 @@ class TiSetup:
         return sub_frame or 0
 
     def loop(self, index: int) -> tuple[list[TiChirp], TiProfile]:
-        """The chirps of a frame's loop, and the profile that they share. Raises InputError for any other."""
+        """Chirps of a frame's loop and their common profile.
+
+        Args:
+            index: Index into `frames`.
+
+        Returns:
+            Chirps in order, and the profile.
+
+        Raises:
+            InputError: If a chirp or profile is undefined, or profiles differ.
+        """
         frame = self.frames[index]
         if not 0 <= frame.first <= frame.last < MAX_CHIRPS:
             raise InputError(f"the frame's chirps {frame.first} to {frame.last} must lie in 0 to {MAX_CHIRPS - 1}")
@@ -106,15 +130,22 @@ class TiSetup:
         return chirps, self.profiles[profiles[0]]
 
     def num_samples(self, index: int) -> int:
-        """Samples of each receiver in a frame."""
+        """Samples per receiver in a frame."""
         chirps, profile = self.loop(index)
         return len(chirps) * self.frames[index].num_loops * profile.num_samples
 
 
 def profile_phases_deg(code: int) -> tuple[float, ...]:
-    """A profile's txPhaseShifter as phases in the samples: six bits per transmitter, in steps of 5.625 degrees.
+    """Decodes a profile's txPhaseShifter: six bits per transmitter in steps of 5.625 degrees.
 
-    Samples turn against the shifter: they are the ramp times the conjugate echo. Source: rlProfileCfg_t of mmWaveLink.
+    Samples are the ramp times the conjugate echo, so they rotate opposite to the shifter. Source: rlProfileCfg_t of
+    mmWaveLink.
+
+    Args:
+        code: Value of txPhaseShifter.
+
+    Returns:
+        Phases in the samples in degrees, one per transmitter.
 
     >>> profile_phases_deg(0x00_40_20_00)
     (0.0, -45.0, -90.0, 0.0)
@@ -123,17 +154,19 @@ def profile_phases_deg(code: int) -> tuple[float, ...]:
 
 
 def radar_from_ti(setup: TiSetup, options: RadarOptions) -> RadarConfig:
-    """The radar with the board's array, restricted to the transmitters that fire.
+    """Converts a configuration to a RadarConfig with the board's array, restricted to the transmitters that fire.
 
     Transmitters are renumbered in the board's order. All range bins are kept, up to a cube of 4 MiB per frame.
 
     Args:
         setup: The configuration.
-        options: Sub-frame, antennas and lanes that replace those of the file.
+        options: Sub-frame, antennas and lanes that override those of the file.
+
+    Returns:
+        The radar.
 
     Raises:
-        InputError: where a sub-frame has to be chosen, chirps differ or cannot be separated, or the radar could not
-            exist.
+        InputError: If a sub-frame must be selected, chirps differ or cannot be separated, or the radar is impossible.
     """
     index = setup.chosen_frame(options.sub_frame)
     chirps, profile = setup.loop(index)
@@ -158,7 +191,7 @@ def radar_from_ti(setup: TiSetup, options: RadarOptions) -> RadarConfig:
     bins = profile.num_samples if setup.complex_samples else profile.num_samples // 2
     num_loops = setup.frames[index].num_loops * repeats
     channels = len(receivers) if lanes == 2 else 4
-    words = 2 * channels if setup.complex_samples else channels  # of a sample of all receivers
+    words = 2 * channels if setup.complex_samples else channels  # per sample of all receivers
     counts = [setup.num_samples(at) for at in range(len(setup.frames))]
     return RadarConfig(
         name=f"{setup.name}_{index}" if setup.has_sub_frames else setup.name,
@@ -199,14 +232,14 @@ def _band_hz(start_hz: float) -> tuple[float, float]:
 
 
 def _repeated_sequence(chirps: tuple[Chirp, ...]) -> tuple[tuple[Chirp, ...], int]:
-    """The shortest sequence that the chirps repeat, and its number of repetitions."""
+    """Shortest sequence that the chirps repeat, and its number of repetitions."""
     lengths = (length for length in range(1, len(chirps) + 1) if len(chirps) % length == 0)
     length = next(length for length in lengths if chirps[:length] * (len(chirps) // length) == chirps)
     return chirps[:length], len(chirps) // length
 
 
 def _weights(tx_mask: int, chirps: list[TiChirp], profile: TiProfile, board: AntennaTable) -> tuple[Chirp, ...]:
-    """The weights of the board's transmitters in each chirp, the first that fires with phase 0 where it is alone."""
+    """Weights of the board's transmitters in each chirp; a transmitter that fires alone has phase 0."""
     num_tx, profile_deg = len(board.tx_halfwaves), profile_phases_deg(profile.phase_code)
     found: list[Chirp] = []
     for chirp in chirps:
@@ -222,12 +255,12 @@ def _weights(tx_mask: int, chirps: list[TiChirp], profile: TiProfile, board: Ant
             )
         phase_deg = [sum(both) for both in zip(chirp.phase_deg, profile_deg, strict=True)]
         on = [tx for tx in range(num_tx) if mask >> tx & 1]
-        turn = 0.0 if len(on) > 1 else phase_deg[on[0]]  # of one alone it means nothing
+        turn = 0.0 if len(on) > 1 else phase_deg[on[0]]  # irrelevant for a single transmitter
         found.append(tuple(_phasor(phase_deg[tx] - turn) if tx in on else 0j for tx in range(num_tx)))
     return tuple(found)
 
 
 def _phasor(degrees: float) -> complex:
-    """exp(j phase), exact at whole quarter turns."""
+    """exp(j phase), exact at multiples of 90 degrees."""
     value = np.exp(1j * np.radians(degrees % 360))
     return complex(np.round(value.real, 12), np.round(value.imag, 12))

@@ -1,4 +1,4 @@
-"""The lines of an mmWave SDK .cfg that configure the demo's point cloud.
+"""Lines of an mmWave SDK .cfg that configure the point cloud of the demo.
 
 Reference: mmWave SDK User Guide, "Configuration (.cfg) File Format": cfarCfg, peakGrouping, clutterRemoval,
 multiObjBeamForming.
@@ -13,18 +13,27 @@ from mmweaver.core.firmware_settings import AVERAGE_MODES, SDK3_MAX_OBJECTS, Fir
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.io.ti_cfg import Line, adc_buffer, read_ti_cfg, ti_cfg_lines
 
-# SDK 2 and later put the sub-frame before these numbers, so lines have one more than in SDK 1.
+# Number of arguments in SDK 1; SDK 2 and later prepend the sub-frame.
 PLAIN_LENGTH = {"cfarCfg": 7, "peakGrouping": 5, "clutterRemoval": 1, "multiObjBeamForming": 2}
 SDK3_CFAR_LENGTH = 9
 DB_PER_OCTAVE = 20 * math.log10(2)
 
 
 def read_ti_firmware(path: Path | str) -> FirmwareSettings:
-    """The settings of the point cloud; those that the file does not hold are the demo's defaults.
+    """Reads the point-cloud settings of a .cfg; missing ones are the demo's defaults.
 
-    The device follows from adcbufCfg: the IWR1443's demo uses interleaved channels (0), those of other devices do
-    not (1); without the line it is the IWR1443. SDK 3 has thresholds in dB, grouping in each cfarCfg and a longer list
-    of points. Raises InputError where the file cannot be read, has no cfarCfg, or a number is out of range.
+    The device follows from adcbufCfg: the demo of the IWR1443 uses interleaved channels (0), those of other devices do
+    not (1); without the line the IWR1443 is assumed. SDK 3 has thresholds in dB, grouping in each cfarCfg and a longer
+    point list.
+
+    Args:
+        path: The file.
+
+    Returns:
+        The settings.
+
+    Raises:
+        InputError: If the file cannot be read, has no cfarCfg, or a number is out of range.
     """
     path = Path(path)
     lines = ti_cfg_lines(path, PLAIN_LENGTH)
@@ -60,7 +69,7 @@ def read_ti_firmware(path: Path | str) -> FirmwareSettings:
 
 
 def _drop_sub_frame(line: Line) -> Line:
-    """A line with the numbers of SDK 1 first."""
+    """The line in the format of SDK 1."""
     return Line(line.number, line.command, line.values[len(line.values) > PLAIN_LENGTH[line.command] :])
 
 
@@ -76,7 +85,7 @@ def _cfar(line: Line | None, device: str, config: RadarConfig) -> FirmwareCfar |
         raise InputError(f"line {line.number}: cfarCfg has average mode {average}; known are 0, 1 and 2")
     in_db = _is_of_sdk3(line)
     if in_db and average != 0:
-        shift += 1  # SDK 3 divides the one side that CASO and CAGO take by 2^shift, older ones by half of that
+        shift += 1  # SDK 3 divides the single side of CASO and CAGO by 2^shift, older SDKs by half of that
     return FirmwareCfar(
         average=AVERAGE_MODES[average],
         window=window,

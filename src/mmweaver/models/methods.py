@@ -172,8 +172,8 @@ class Learned:
         """
         self.weights, self.propagation = weights, propagation
         self._encoded = _Latest(self._encode)
-        # the network's input of a room is the same for every board with the same antenna positions
-        self._given = _Latest(lambda scene, config, background, board: _given_room(scene, config, propagation))
+        # what the network is given of a room is the same for every board with the same places of antennas
+        self._given = _Latest(lambda scene, config, background, board: _given_room(scene, config, self.propagation))
 
     def __call__(
         self,

@@ -1,1 +1,1 @@
-"""A sentence becomes the motion of 22 joints, placed in a Scene."""
+"""Turns a sentence into the motion of 22 joints, placed in a Scene."""

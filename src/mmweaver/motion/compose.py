@@ -1,7 +1,8 @@
-"""From a scheduled plan and a Scene to the motion of a body in it. Read this file first."""
+"""Composes the motion of a body in a Scene from a scheduled plan. Start with this file."""
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.motion.animation.assemble import assembled_controls, solved
@@ -18,31 +19,40 @@ from mmweaver.motion.planning.constraint_relaxation import relax_constraints
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.named_places import settled
 from mmweaver.motion.planning.placement import Conditions, Placement, place
-from mmweaver.motion.planning.targets import drop_targets
 
-RUN_ROOM_M = 3.5  # straight free floor that running to and fro at 3 m/s needs
+RUN_ROOM_M = 3.5  # straight free floor required to run to and fro at 3 m/s
 
 
 @dataclass(frozen=True, kw_only=True)
 class Motion:
-    """A body's motion in a scene, the plan that it carries out, and what was assumed."""
+    """Motion of a body in a scene, the plan that it realizes, and the assumptions made.
 
-    pose: PoseSequence  # 120 Hz, from two samples before 0 to two after the end, in the radar's frame
+    Attributes:
+        pose: Joints at 120 Hz in the radar's frame, from two samples before 0 to two after the end.
+        plan: The scheduled plan.
+        assumptions: Plain sentences.
+        person: The person; None for a recorded motion.
+        end: Final state of the body; None for a recorded motion.
+        controls: Pose parameters at the times of `pose`; None for a recorded motion.
+        chair: A chair assumed to be pulled out, if any.
+    """
+
+    pose: PoseSequence
     plan: MotionPlan
-    assumptions: tuple[str, ...]  # plain sentences
-    person: Person | None = None  # None of a recorded motion
-    end: BodyState | None = None  # how it ends; None of a recorded motion
-    controls: Controls | None = None  # at the times of the pose; None of a recorded motion
-    chair: PulledChair | None = None  # that is taken as pulled out
+    assumptions: tuple[str, ...]
+    person: Person | None = None
+    end: BodyState | None = None
+    controls: Controls | None = None
+    chair: PulledChair | None = None
 
     @property
     def shown(self) -> str:
-        """All that the person does, in its order; "" of a recorded motion."""
+        """Description of all steps in order; "" for a recorded motion."""
         return "" if self.person is None else in_turn(self.plan.steps)
 
     @property
     def clauses(self) -> tuple[ClauseRecord, ...]:
-        """What became of every clause: the plan's records, and what the room made of them."""
+        """Outcome of every clause: the plan's records, with the notes that the room has added."""
         records = add_shown_text(self.plan.clauses, self.plan.steps)
         room = [note for note in self.assumptions if note not in self.plan.notes]
         for step in self.plan.steps:
@@ -59,70 +69,61 @@ def compose(
     plan: MotionPlan,
     scene: Scene,
     *,
-    seed: int,
     range_window_m: tuple[float, float],
-    start_m: tuple[float, float] | None = None,
     height_m: float | None = None,
     subject: int | None = None,
     person: Person | None = None,
-    heading_rad: float | None = None,
-    is_varied: bool = True,
-    others: tuple[PoseSequence, ...] = (),
-    has_photo: bool = True,
-    after: BodyState | None = None,
     may_touch: bool = True,
     farthest_m: float = math.inf,
+    **conditions: Any,
 ) -> Motion:
     """Finds a free trajectory on the scene's floor for a plan, and animates the body along it.
 
     Args:
         plan: a scheduled plan, as `motion.language.timing.plan_motion` makes it of a sentence.
         scene: the room, in the radar's frame.
-        seed: decides everything that the sentence leaves open.
         range_window_m: nearest and farthest slant range that the radar keeps; the body stays inside.
-        start_m: where the person starts, (x, y); chosen if None.
         height_m: the body's height; if None as the sentence describes the person, else of the population.
         subject: who it is: surface, build, habits and usual height; sampled by the seed if None.
-        heading_rad: where the body faces first, from +x towards +y; chosen if None.
-        is_varied: False keeps people who stand facing the radar, where it sees them best, and gives them no habits.
         person: instead of the two, a person made otherwise.
-        farthest_m: what the radar sees at most, with all its range bins; a longer window is not advised.
-        others: people who are in the scene already; the trajectory keeps clear of them (see `multi_person`).
-        has_photo: False where no photo stands behind the scene. Nobody can then walk to a door or a table of it; the
-            walk leads where there is room, and an assumption says so.
-        after: how the motion before ended, which this one goes on from (see `continuous`).
         may_touch: where nothing else has room, travelling movements are done on the spot, falls go another way, and a
             lying body touches furniture; each deviation is reported. False raises instead.
+        farthest_m: what the radar sees at most, with all its range bins; a longer window is not advised.
+        **conditions: the fields of `planning.placement.Conditions`: `seed`, and perhaps `start_m`, `heading_rad`,
+            `is_varied` (False: no habits, too), `others` and `after`.
 
-    Raises InputError where the room has no place for the motion.
+    Returns:
+        The motion at 120 Hz in the radar's frame, with plan, person and assumptions.
+
+    Raises:
+        InputError: If the room has no place for the motion.
+        ValueError: If the plan is not scheduled.
     """
     if plan.duration_s <= 0:
         raise ValueError("the plan is not scheduled; make it with plan_motion, or call schedule")
-    plan = settled(plan if has_photo else drop_targets(plan))
-    person = person or person_of(subject_of(seed) if subject is None else subject, plan.person, height_m)
+    given = Conditions(**conditions)
+    plan = settled(plan)
+    person = person or person_of(subject_of(given.seed) if subject is None else subject, plan.person, height_m)
     plan = apply_habits(plan, person)
     body = SkeletonProportions(person.height_m)
     floor = FloorMap.of(scene, range_window_m, person.height_m)
     plan, running_notes = _running(plan, floor)
 
     controls: dict[int, Controls] = {}
-    conditions = Conditions(
-        seed=seed, start_m=start_m, heading_rad=heading_rad, is_varied=is_varied, others=others, after=after
-    )
 
     def compose_on(plan: MotionPlan, floor: FloorMap) -> RankedPlacement:
         def candidates(attempt: int) -> list[Placement]:
-            return place(plan, floor, body, conditions, attempt=attempt)
+            return place(plan, floor, body, given, attempt=attempt)
 
         def animate(placement: Placement) -> PoseSequence:
             made = assembled_controls(
                 placement.steps,
                 placement.path,
                 body,
-                seed=seed,
+                seed=given.seed,
                 duration_s=plan.duration_s,
-                habits=habits_of(person.subject) if is_varied else NO_HABITS,
-                entry=None if after is None else after.controls,
+                habits=habits_of(person.subject) if given.is_varied else NO_HABITS,
+                entry=None if given.after is None else given.after.controls,
             )
             controls[id(placement)] = made
             pose = solved(made, body, duration_s=plan.duration_s, floor_z_m=scene.floor_z_m)
@@ -151,7 +152,7 @@ def _depth_m(result: RankedPlacement) -> float:
 
 
 def _running(plan: MotionPlan, floor: FloorMap) -> tuple[MotionPlan, tuple[str, ...]]:
-    """Running to and fro takes more room than most rooms have: without a direction it is then on the spot."""
+    """Replaces undirected running by running on the spot if the room is too short for running to and fro."""
     if not any(_runs_anywhere(step) for step in plan.steps):
         return plan, ()
     longest_m = floor.longest_free_m(RUN_ROOM_M)
@@ -170,6 +171,6 @@ def _running(plan: MotionPlan, floor: FloorMap) -> tuple[MotionPlan, tuple[str, 
 
 
 def _runs_anywhere(step: Step) -> bool:
-    """Whether a step is running that nothing leads anywhere: no direction, circle, landmark, place or path."""
+    """Whether a step is running without direction, circle, landmark, place or path."""
     leads = step.direction or step.target or step.arc_deg or step.place or step.route_m
     return step.lower == "jog" and not leads

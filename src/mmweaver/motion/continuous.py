@@ -1,7 +1,7 @@
-"""One sentence after the other without a break: each motion begins where, how and as fast as the last one is.
+"""Consecutive sentences without a break: each motion begins with the pose and velocity with which the last one ended.
 
-Motions are composed one by one, each from the place, heading and posture in which the last one ends. What is left
-between the two (where a hand hangs, how the feet stand) fades, see `animation.carry_over`.
+Motions are composed one by one, each from the position, heading and posture in which the last one ended. The residual
+between the two (position of the hands, stance of the feet) fades, see `animation.carry_over`.
 Reference: docs/decisions/streams.md.
 """
 
@@ -24,10 +24,11 @@ from mmweaver.motion.language.timing import natural_s, schedule
 from mmweaver.motion.people import Person, apply_habits, person_of, subject_of
 from mmweaver.motion.planning.body_state import BodyState
 from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.placement import Conditions
 from mmweaver.motion.planning.seating import preferred, usable_seats
 
-IDLE_S = 10.0  # of a motion in which nothing new happens
-HISTORY_S = 2.5  # of the motion before, kept for whoever looks back in time
+IDLE_S = 10.0  # duration of a part without a new sentence
+HISTORY_S = 2.5  # of the previous motion, kept for windows that reach back in time
 WALK_ON_S = 2.5
 WALKS_ON = "there is no room for this where the person is: they walk on first"
 _NOTHING_SAID = "a person stands"
@@ -35,14 +36,23 @@ _NOTHING_SAID = "a person stands"
 
 @dataclass(frozen=True, kw_only=True)
 class MotionPart:
-    """The motion of one sentence, or of waiting for the next: its frames, and the pose in time of the whole stream."""
+    """The motion of one sentence, or of waiting for the next one, on the time axis of the whole stream.
 
-    pose: PoseSequence  # 120 Hz, time since the stream's first frame; begins HISTORY_S before the part
+    Attributes:
+        pose: Motion at 120 Hz, time since the stream's first frame; begins HISTORY_S before the part.
+        first_frame: First radar frame of the part.
+        num_frames: Number of radar frames.
+        text: The sentence in force.
+        motion: The composed motion, on its own time axis.
+        refused: Why the sentence could not be carried out; "" if it was.
+    """
+
+    pose: PoseSequence
     first_frame: int
     num_frames: int
-    text: str  # the sentence in force
+    text: str
     motion: Motion
-    refused: str = ""  # why the sentence could not be carried out
+    refused: str = ""
 
     @property
     def end_frame(self) -> int:
@@ -50,25 +60,34 @@ class MotionPart:
 
 
 class ContinuousMotion:
-    """Composes part after part for one person in one room. The same seed and sentences give the same motion."""
+    """Composes part after part for one person in one room; the same seed and sentences give the same motion.
+
+    Args:
+        scene: The room, in the radar's frame.
+        frame_period_s: Time per radar frame in seconds; parts last whole frames.
+        range_window_m: Nearest and farthest slant range in metres that the radar keeps.
+        farthest_m: Maximum range in metres with all range bins, for advice in error messages.
+        seed: Determines what the sentences leave open.
+        start_m: Start position (x, y) in metres; None chooses one.
+        heading_rad: Initial heading in radians, from +x towards +y; None chooses one.
+        height_m: Height of the body in metres; None takes the described or the subject's height.
+        subject: Number of the person; None samples it by the seed.
+    """
 
     def __init__(
         self,
         scene: Scene,
+        first: Conditions,
         *,
         frame_period_s: float,
         range_window_m: tuple[float, float],
         farthest_m: float = math.inf,
-        seed: int,
-        start_m: tuple[float, float] | None = None,
-        heading_rad: float | None = None,
         height_m: float | None = None,
         subject: int | None = None,
     ) -> None:
-        self.scene, self.frame_period_s, self.range_window_m, self.seed = scene, frame_period_s, range_window_m, seed
-        self._farthest_m = farthest_m
-        self._start_m, self._heading_rad = start_m, heading_rad
-        self._height_m, self._subject = height_m, subject_of(seed) if subject is None else subject
+        self.scene, self.frame_period_s, self.range_window_m = scene, frame_period_s, range_window_m
+        self._first, self._farthest_m = first, farthest_m  # start and heading are those of the first part
+        self._height_m, self._subject = height_m, subject_of(first.seed) if subject is None else subject
         self._person: Person | None = None
         self._parts = 0
         self._last: MotionPart | None = None
@@ -76,7 +95,17 @@ class ContinuousMotion:
         self._said: MotionPlan | None = None  # the last plan of a sentence
 
     def act(self, plan: MotionPlan) -> MotionPart:
-        """The motion of a parsed sentence, from how the last part ends. Raises InputError where there is no room."""
+        """Composes the motion of a parsed sentence, from the end of the last part.
+
+        Args:
+            plan: Plan of the sentence; it need not be scheduled.
+
+        Returns:
+            The next part.
+
+        Raises:
+            InputError: If there is no room for the motion.
+        """
         person = self._person or person_of(self._subject, plan.person, self._height_m)
         before = None if self._end is None else _held(self._end, HELD_FIRST_S)
         usual = apply_habits(plan, person)
@@ -89,7 +118,7 @@ class ContinuousMotion:
         return part
 
     def _walked_on(self, usual: MotionPlan, before: Step | None, plan: MotionPlan, person: Person) -> MotionPart | None:
-        """The plan after a walk to where there is room for it; None where the body cannot walk, or there is none."""
+        """The plan preceded by a walk to free floor; None if the body cannot walk, or there is none."""
         if before is None or before.posture != "feet" or plan.steps[0].moves:
             return None
         walk = replace(plan.steps[0], lower="walk", upper="", direction=None, seconds=WALK_ON_S)
@@ -100,7 +129,14 @@ class ContinuousMotion:
             return None
 
     def go_on(self, refused: str = "") -> MotionPart:
-        """Nothing new: the last activity goes on, or the posture is held. Never raises after the first sentence."""
+        """Continues without a new sentence: the last activity goes on, or the posture is held.
+
+        Args:
+            refused: Why the last sentence could not be carried out; the posture is then held.
+
+        Returns:
+            The next part; never raises after the first sentence.
+        """
         person = self._person or person_of(self._subject, None, self._height_m)
         if self._end is None or self._last is None:
             return self._compose(_lasting(parse_sentence(_NOTHING_SAID), IDLE_S), person, "")
@@ -114,7 +150,11 @@ class ContinuousMotion:
         return replace(self._compose(held, person, self._last.text), refused=refused)
 
     def cut(self, end_frame: int) -> None:
-        """The last part ends at this frame already, because a new sentence has arrived."""
+        """Ends the last part at an earlier frame, because a new sentence has arrived.
+
+        Args:
+            end_frame: Frame of the stream after the last one of the part.
+        """
         assert self._last is not None
         self._last = replace(self._last, num_frames=end_frame - self._last.first_frame)
 
@@ -125,7 +165,7 @@ class ContinuousMotion:
         number = self._parts
         frames = max(1, math.ceil(natural_s(plan) / self.frame_period_s - 1e-6))
         scheduled = schedule(plan, frames * self.frame_period_s)
-        seed = self.seed if number == 0 else int(stream(self.seed, "stream", number).integers(2**31))
+        seed = self._first.seed if number == 0 else int(stream(self._first.seed, "stream", number).integers(2**31))
         is_first = self._end is None
         motion = compose(
             scheduled,
@@ -134,8 +174,8 @@ class ContinuousMotion:
             range_window_m=self.range_window_m,
             person=person,
             after=self._state(),
-            start_m=self._start_m if is_first else None,
-            heading_rad=self._heading_rad if is_first else None,
+            start_m=self._first.start_m if is_first else None,
+            heading_rad=self._first.heading_rad if is_first else None,
             may_touch=may_touch,
             farthest_m=self._farthest_m,
         )
@@ -151,7 +191,7 @@ class ContinuousMotion:
         return part
 
     def _state(self) -> BodyState | None:
-        """How the last part ends, at the frame at which it really does."""
+        """State of the body at the frame at which the last part actually ends."""
         if self._last is None or self._end is None:
             return None
         motion, ended_s = self._last.motion, self._last.num_frames * self.frame_period_s
@@ -160,7 +200,7 @@ class ContinuousMotion:
         return replace(self._end, controls=state)
 
     def _way_to_seat_m(self, plan: MotionPlan, person: Person) -> float | None:
-        """How far it is to the nearest seat that the sentence means; None where the body stands before one."""
+        """Distance to the nearest seat that the sentence refers to; None if the body already stands in front of one."""
         if self._end is None or self._end.posture != "feet" or self._end.sitting is not None:
             return None
         floor = FloorMap.of(self.scene, self.range_window_m, person.height_m)
@@ -184,7 +224,16 @@ def _stays(motion: Motion) -> bool:
 
 
 def joined(before: PoseSequence | None, pose: PoseSequence, begin_s: float) -> PoseSequence:
-    """A motion that begins at `begin_s` after the end of the one before it, in the same time."""
+    """Appends a motion to the recent history of the one before it, on one time axis.
+
+    Args:
+        before: Motion so far; None for the first part.
+        pose: Motion whose time starts at 0.
+        begin_s: Time on the stream's axis at which `pose` begins, seconds.
+
+    Returns:
+        The last HISTORY_S of `before`, then `pose`.
+    """
     if before is None:
         return replace(pose, time_s=pose.time_s + begin_s)
     new = pose.time_s > -1e-9

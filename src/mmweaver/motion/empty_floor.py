@@ -1,10 +1,11 @@
-"""A sentence acted out without a photo, on an empty floor in front of the radar."""
+"""Motion of a sentence without a photo, on an empty floor in front of the radar."""
 
 import numpy as np
 
 from mmweaver.core.records import CameraIntrinsics, FreeSpace, Plane, RgbdPhoto, Scene
 from mmweaver.motion.compose import Motion, compose
 from mmweaver.motion.language.timing import plan_motion
+from mmweaver.motion.planning.targets import drop_targets
 
 RADAR_HEIGHT_M = 1.1
 FLOOR_M = 8.0  # both ways
@@ -14,7 +15,7 @@ _LEVEL = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 
 
 def empty_floor() -> Scene:
-    """A free floor of 8 x 8 metres in front of a radar 1.1 m high, with a camera that sees all of it."""
+    """A free floor of 8 x 8 m in front of a radar 1.1 m high, all of it visible to the camera."""
     half = FLOOR_M / 2
     x, y = np.arange(-half, half + 1e-9, CELL_M), np.arange(0.0, FLOOR_M + 1e-9, CELL_M)
     free = np.ones((len(y), len(x)), dtype=bool)
@@ -53,22 +54,32 @@ def act_out(
     height_m: float | None = None,
     subject: int | None = None,
 ) -> Motion:
-    """The motion of a sentence on an empty floor; the radar stands at the origin, the floor lies 1.1 m below it.
+    """Composes the motion of a sentence on an empty floor, 1.1 m below the radar at the origin.
 
-    Seats are stools, as nothing else stands there, and a walk to a door leads where there is room. Without
-    `duration_s` the motion takes as long as is natural. Raises InputError where the sentence is not understood or does
-    not fit the time.
+    Seats are stools, since the floor is empty, and a walk to a door leads to free floor.
+
+    Args:
+        text: The sentence.
+        duration_s: Duration in seconds; None for the natural one.
+        seed: Determines what the sentence leaves open.
+        height_m: Height of the body in metres; None takes the described or the subject's height.
+        subject: Number of the person; None samples it by the seed.
+
+    Returns:
+        The motion at 120 Hz in the radar's frame, with the plan and its assumptions.
+
+    Raises:
+        InputError: If the sentence is not understood or does not fit the duration.
 
     >>> motion = act_out("a person bows", duration_s=2.0)
     >>> motion.plan.steps[0].lower, motion.pose.joints_m.shape
     ('bow', (245, 22, 3))
     """
     return compose(
-        plan_motion(text, duration_s),
+        drop_targets(plan_motion(text, duration_s)),  # no photo shows a door or table to walk to
         empty_floor(),
         seed=seed,
         range_window_m=WINDOW_M,
         height_m=height_m,
         subject=subject,
-        has_photo=False,
     )

@@ -1,8 +1,8 @@
-"""The sentence of an empty place: nobody is there."""
+"""Recognizes sentences of an empty scene, without a person."""
 
 import re
 
-NOBODY = "nobody"  # the short form; task files, requests and meta.json name an empty place so
+NOBODY = "nobody"  # canonical form, used in task files, requests and meta.json
 _ANYBODY = r"(?:nobody|no ?-?one|no (?:person|people|human))"
 _PLACE = r"(?:room|place|scene|floor|house|kitchen|bedroom|bathroom|office|hall|corridor|(?:living|dining) room)"
 _EMPTY = re.compile(
@@ -15,7 +15,10 @@ _EMPTY = re.compile(
 
 
 def says_nobody(text: str) -> bool:
-    """Whether a whole sentence says that a place is empty.
+    """Whether a whole sentence describes an empty scene.
+
+    Args:
+        text: The sentence.
 
     >>> says_nobody("nobody"), says_nobody("An empty room."), says_nobody("nobody waves")
     (True, True, False)

@@ -1,13 +1,13 @@
 """Micro-motion of a body that stands still: postural sway, wavering and tremor of limbs, breathing and heartbeat.
 
-Millimetres, and yet what a radar sees of a standing person: clutter removal suppresses only what is truly static.
-Sway is that of somebody who stands as people do, twice that of subjects who were asked to stand quietly (centre of mass
-3 to 5 mm rms fore and aft, 4 to 6 mm/s); unconstrained, people also fidget every minute and shift by 2 cm (Duarte and
-Zatsiorsky, "Patterns of Center of Pressure Migration during Prolonged Unconstrained Standing", 1999). The trunk moves
-over the hips as much as the legs over the ankles: angular accelerations in a ratio of 3.1 +- 1.2 (Aramaki et al.,
-"Reciprocal Angular Acceleration of the Ankle and Hip Joints during Quiet Standing in Humans", 2001; here 2.8). Tremor
-is physiological (8 to 12 Hz, some 0.1 mm at a hand held out); so is the chest wall (4 to 12 mm at 0.2 to 0.33 Hz
-breathing, 0.2 to 0.5 mm at the heartbeat). Reference: docs/radar_primer.md, section 4.
+Millimetres, but all that a radar observes of a standing person: clutter removal suppresses only what is truly static.
+Sway is that of relaxed standing, twice that of subjects instructed to stand quietly (centre of mass 3 to 5 mm rms fore
+and aft, 4 to 6 mm/s); unconstrained, people also fidget every minute and shift by 2 cm (Duarte and Zatsiorsky,
+"Patterns of Center of Pressure Migration during Prolonged Unconstrained Standing", 1999). The trunk moves over the hips
+as much as the legs over the ankles: angular accelerations in a ratio of 3.1 +- 1.2 (Aramaki et al., "Reciprocal Angular
+Acceleration of the Ankle and Hip Joints during Quiet Standing in Humans", 2001; here 2.8). Tremor is physiological (8
+to 12 Hz, about 0.1 mm at an outstretched hand); so is the motion of the chest wall (4 to 12 mm at 0.2 to 0.33 Hz for
+breathing, 0.2 to 0.5 mm for the heartbeat). Reference: docs/radar_primer.md, section 4.
 """
 
 from dataclasses import dataclass
@@ -17,9 +17,9 @@ import numpy as np
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import JOINT_NAMES, NUM_JOINTS, PARENTS, joint
 
-CENTRE_OF_MASS = 0.55  # of the height; sway amplitudes are given there
+CENTRE_OF_MASS = 0.55  # of the height; sway amplitudes refer to this point
 SEATED, STANDING = 0.36, 0.48  # pelvis above the feet, of the height: a seated body sways about the pelvis
-# A seated body rests on the seat, its hands on the thighs: how far it sways, wavers and trembles against one standing.
+# Amplitudes relative to a standing body: a seated one rests on the seat, its hands on the thighs.
 SEATED_SWAY, SEATED_WAVER, SEATED_TREMOR = 0.5, 0.5, 0.25
 # Wavering of each joint relative to its parent, as a share of `waver_m`. Standing feet do not waver.
 WAVER = {"knee": 0.2, "spine1": 0.6, "spine3": 0.6, "head": 0.5, "shoulder": 0.3, "elbow": 0.3, "wrist": 0.4}
@@ -30,8 +30,12 @@ WEIGHT = np.array([WAVER.get(name.split("_")[-1], 0.0) for name in JOINT_NAMES])
 class MicroMotionSettings:
     """Amplitudes for a typical person; those of each person and sequence are sampled around these.
 
-    `sway_m` and `waver_m` are rms over minutes, `tremor_m` rms at the hand, `breath_m` and `heart_m` peak to peak at
-    the front of the chest.
+    Attributes:
+        sway_m: Sway of the centre of mass, rms over minutes, metres.
+        waver_m: Wavering of the joints, rms over minutes, metres.
+        tremor_m: Tremor at the hand, rms, metres.
+        breath_m: Breathing at the front of the chest, peak to peak, metres.
+        heart_m: Heartbeat at the front of the chest, peak to peak, metres.
     """
 
     sway_m: float = 8.0e-3
@@ -45,9 +49,14 @@ STILL = MicroMotionSettings(sway_m=0.0, waver_m=0.0, tremor_m=0.0, breath_m=0.0,
 
 
 class Waves:
-    """Smooth random functions of time: sums of sines, spread evenly over octaves from `low` to `high` Hz; rms 1.
+    """Smooth random functions of time with rms 1: sums of sines, evenly distributed over octaves.
 
-    Amplitudes fall as f^-`steepness`; with 1 every octave has the same velocity.
+    Args:
+        rng: Random stream of frequencies and phases.
+        shape: Shape of the values at one time.
+        low: Lowest frequency in Hz.
+        high: Highest frequency in Hz.
+        steepness: Amplitudes fall as f^-steepness; with 1 every octave has the same velocity.
     """
 
     def __init__(self, rng: np.random.Generator, shape: tuple[int, ...], low: float, high: float, steepness: float):
@@ -60,13 +69,26 @@ class Waves:
         self.phase_cycles = rng.random((*shape, count))
 
     def at(self, time_s: np.ndarray) -> np.ndarray:
-        """Values (time, *shape) at times (time,) in seconds."""
+        """Evaluates the functions.
+
+        Args:
+            time_s: Times (time,) in seconds.
+
+        Returns:
+            Values (time, *shape).
+        """
         time = time_s.reshape(-1, *(1,) * self.phase_cycles.ndim)
         return (self.amplitude * np.sin(2 * np.pi * (self.frequency_hz * time + self.phase_cycles))).sum(axis=-1)
 
 
 class MicroMotion:
-    """Micro-motion of one person in one sequence: rates and amplitudes by the subject, phases by the seed."""
+    """Micro-motion of one person in one sequence.
+
+    Args:
+        subject: Number of the person, which determines rates and relative amplitudes.
+        seed: Seed of the sequence, which determines the phases.
+        settings: Typical amplitudes.
+    """
 
     def __init__(self, subject: int, seed: int, settings: MicroMotionSettings):
         self.settings = settings
@@ -80,7 +102,16 @@ class MicroMotion:
         self.tremor = Waves(phases, (NUM_JOINTS, 3), 8.0, 12.0, 0.0)
 
     def moved(self, joints_m: np.ndarray, time_s: np.ndarray, height_m: float) -> np.ndarray:
-        """Joints (time, 22, 3) in metres with sway, wavering and tremor added; times (time,) in seconds."""
+        """Adds sway, wavering and tremor to joints.
+
+        Args:
+            joints_m: Joints (time, 22, 3) in metres, z up.
+            time_s: Times (time,) in seconds.
+            height_m: Height of the body in metres.
+
+        Returns:
+            Joints (time, 22, 3) in metres; `joints_m` itself if these amplitudes are zero.
+        """
         if not (self.settings.sway_m or self.settings.waver_m or self.settings.tremor_m):
             return joints_m
         stands = _stands(joints_m, height_m)
@@ -100,7 +131,14 @@ class MicroMotion:
         return moved + self.size[1] * _along_limbs(own)
 
     def chest_m(self, time_s: np.ndarray) -> np.ndarray:
-        """Displacement (time,) of the chest's front in metres. Breathing in is faster than breathing out."""
+        """Displacement of the front of the chest by breathing and heartbeat; inhaling is faster than exhaling.
+
+        Args:
+            time_s: Times (time,) in seconds.
+
+        Returns:
+            Metres outward, (time,).
+        """
         breath = 2 * np.pi * (self.breath_hz * time_s + self.breath_cycles)
         heart = 2 * np.pi * (self.heart_hz * time_s + self.heart_cycles)
         out = self.settings.breath_m * self.size[2] / 2 * (np.sin(breath) + 0.2 * np.sin(2 * breath))
@@ -113,14 +151,14 @@ def _lower_foot_m(joints_m: np.ndarray) -> np.ndarray:
 
 
 def _stands(joints_m: np.ndarray, height_m: float) -> np.ndarray:
-    """How much a body stands (time, 1): 1, and 0 where its pelvis is as low as a seated one's."""
+    """Degree of standing (time, 1): 1 upright, 0 where the pelvis is as low as that of a seated body."""
     pelvis = joints_m[:, [joint("pelvis")], 2] - _lower_foot_m(joints_m)
     share = np.clip((pelvis / height_m - SEATED) / (STANDING - SEATED), 0, 1)
     return share**2 * (3 - 2 * share)
 
 
 def _share(seated: float, stands: np.ndarray) -> np.ndarray:
-    """A movement's size (time, 1) against a standing body's, between `seated` and 1."""
+    """Amplitude (time, 1) relative to a standing body, from `seated` to 1."""
     return seated + (1 - seated) * stands
 
 

@@ -1,8 +1,7 @@
-"""Motion models: whatever turns a sentence into moving joints, for sentences that the library does not know.
+"""Motion models turn a sentence into moving joints, for sentences that the library does not cover.
 
-A model is a callable that follows `MotionModel`. It is named by `--motion-model`: a MotionGPT checkpoint, an entry
-point of the group mmweaver.motion_models, or "module:attribute" of a module that can be imported, or lies in the
-current folder.
+A model is a callable that follows `MotionModel`. `--motion-model` names it: a MotionGPT checkpoint, an entry point of
+the group mmweaver.motion_models, or "module:attribute" of a module that is installed or lies in the current folder.
 """
 
 import importlib
@@ -21,33 +20,48 @@ from mmweaver.motion.mocap.clip_placement import facing_of
 
 GROUP = "mmweaver.motion_models"
 Place = tuple[float, float]
-_GOES_M = 0.3  # a pelvis that has gone so far shows where it goes
+_GOES_M = 0.3  # displacement of the pelvis that defines its direction
 
 
 @dataclass(frozen=True, kw_only=True)
 class MotionTask:
-    """What a motion model is asked for."""
+    """Input of a motion model.
+
+    Attributes:
+        sentence: What the person does.
+        start_m: Position (x, y) of the pelvis at time 0, in the radar's frame; None if unconstrained.
+        path_m: Corners (x, y) that the pelvis passes, from the start on; empty if unconstrained.
+        seconds: Duration; None for the model's natural one.
+        seed: Seed of the model's random choices.
+    """
 
     sentence: str
-    start_m: Place | None = None  # (x, y) of the pelvis at time 0, in the radar's frame; None where it is open
-    path_m: tuple[Place, ...] = ()  # corners (x, y) that the pelvis passes, from the start on; empty where it is open
-    seconds: float | None = None  # None: as long as the model finds natural
+    start_m: Place | None = None
+    path_m: tuple[Place, ...] = ()
+    seconds: float | None = None
     seed: int = 0
 
 
 @runtime_checkable
 class MotionModel(Protocol):
-    """A motion model: 22 joints in SMPL order at an even rate, in metres, z up; anywhere on its floor.
+    """A motion model: 22 joints in SMPL order at a constant rate, in metres, z up; anywhere on its floor.
 
-    A model that follows `path_m` returns the motion in those coordinates; one that does not may ignore it, and says so
-    in the clip's notes. It raises InputError for what it cannot do.
+    A model that follows `path_m` returns the motion in those coordinates; one that does not may ignore it and reports
+    that in the clip's notes. It raises InputError for tasks that it cannot perform.
     """
 
     def __call__(self, task: MotionTask) -> MotionClip: ...
 
 
 def load_motion_model(name: str) -> MotionModel:
-    """The model of that name; see above. Raises InputError where there is none."""
+    """Loads a motion model by name.
+
+    Args:
+        name: Entry point, "module:attribute", or anything else for a MotionGPT checkpoint.
+
+    Raises:
+        InputError: If there is no such model.
+    """
     found = plugins(GROUP)
     if name in found:
         return load_plugin(found[name])
@@ -58,7 +72,18 @@ def load_motion_model(name: str) -> MotionModel:
 
 
 def clip_of(model: MotionModel, task: MotionTask) -> MotionClip:
-    """What a model makes of a task, checked. Raises InputError for what is no motion of 22 joints."""
+    """Runs a model and validates its result.
+
+    Args:
+        model: The motion model.
+        task: Sentence, start, path and duration.
+
+    Returns:
+        The clip, with joints in metres, (frame, 22, 3).
+
+    Raises:
+        InputError: If the result is not a finite motion of 22 joints at a rate of up to 1000 Hz.
+    """
     clip = model(task)
     joints = getattr(clip, "joints_m", None)
     if not (isinstance(joints, np.ndarray) and joints.ndim == 3 and joints.shape[1:] == (22, 3) and len(joints) > 1):
@@ -69,10 +94,17 @@ def clip_of(model: MotionModel, task: MotionTask) -> MotionClip:
 
 
 def heading_of(path_m: tuple[Place, ...], clip: MotionClip) -> float | None:
-    """The heading of the body at the clip's start, radians from +x towards +y, for its way to begin as the path does.
+    """Initial heading with which the clip's motion starts along a path.
 
-    A body that goes sideways or backwards (a cartwheel) does not face where it goes; one that goes nowhere faces along
-    the path. None without a path.
+    A body that moves sideways or backwards (a cartwheel) does not face its direction of motion; one that stays in place
+    faces along the path.
+
+    Args:
+        path_m: Corners (x, y) of the path in metres.
+        clip: Motion with z up.
+
+    Returns:
+        Heading in radians, from +x towards +y; None without a path.
     """
     if len(path_m) < 2:
         return None
@@ -88,8 +120,8 @@ def heading_of(path_m: tuple[Place, ...], clip: MotionClip) -> float | None:
 
 def _imported(module: str, attribute: str) -> MotionModel:
     here = str(Path.cwd())
-    if here not in sys.path:  # an installed command does not look there, python -m does
-        sys.path.append(here)  # last, so that it hides no installed module; kept, for what the model imports later
+    if here not in sys.path:  # not on the path of an installed command, unlike python -m
+        sys.path.append(here)  # last, to shadow no installed module; kept for later imports of the model
     try:
         model = getattr(importlib.import_module(module), attribute)
     except (ImportError, AttributeError) as error:
@@ -100,7 +132,7 @@ def _imported(module: str, attribute: str) -> MotionModel:
 
 
 def _run_motiongpt(name: str, task: MotionTask) -> MotionClip:
-    """MotionGPT; it knows neither start nor path, which the placement in the room supplies as far as it can."""
+    """Runs MotionGPT, which ignores start and path; the placement in the room applies them as far as possible."""
     from dataclasses import replace
 
     from mmweaver.motion.motiongpt.motiongpt import MotionGPT

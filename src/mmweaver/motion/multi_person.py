@@ -1,13 +1,12 @@
-"""Several people in one room: composed one after the other, each clear of those who are already there.
+"""Several people in one room: composed one after the other, each clear of those already there.
 
-People with a given start go first, the others follow in the order of their sentences. Where one finds no place, all
-are composed again with other random numbers, and that person goes first.
-
+People with a given start go first, the others follow in the order of their sentences. If one finds no place, all are
+composed again with other random numbers, and that person goes first.
 Clear means at all times: pelvises at least 0.5 m apart, and at least 2 cm between the surfaces of two bodies.
 """
 
-import math
 from collections.abc import Callable, Sequence
+from typing import Any
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence, Scene
@@ -27,20 +26,20 @@ def compose_people(
     scene: Scene,
     *,
     seed: int,
-    range_window_m: tuple[float, float],
     starts_m: Sequence[Place | None] | None = None,
     heights_m: Sequence[float | None] | None = None,
     subjects: Sequence[int | None] | None = None,
     first: Motion | None = None,
     heading_rad: float | None = None,
-    farthest_m: float = math.inf,
+    **window: Any,
 ) -> tuple[Motion, ...]:
-    """One motion for each scheduled plan, in their order; each is another subject.
+    """Composes one motion per scheduled plan, each of another subject.
 
     `starts_m`, `heights_m` and `subjects` hold each person's start (x, y), height and number, None where it is chosen.
     `heading_rad` is where the first faces first. `first` is the first
     person's motion where it exists already (a recorded one); it stays as it is, and `plans[0]` is not used. Otherwise
-    the first person moves as they would alone, wherever that leaves room for the others. Raises InputError as
+    the first person moves as they would alone, wherever that leaves room for the others. `window`: `range_window_m` and
+    `farthest_m` as for `compose`. Raises InputError as
     `compose` does, and where the people cannot be kept separate.
     """
     starts = [None] * len(plans) if starts_m is None else list(starts_m)
@@ -57,14 +56,13 @@ def compose_people(
             plan,
             scene,
             seed=own_seed,
-            range_window_m=range_window_m,
             start_m=starts[index],
             height_m=heights[index],
             subject=numbers[index],
             others=others,
             heading_rad=None if index or first is not None else heading_rad,
             may_touch=may_touch,
-            farthest_m=farthest_m,
+            **window,
         )
 
     if len(plans) == 1:
@@ -78,10 +76,10 @@ def compose_people(
             try:
                 people[index] = _join(list(people.values()), alone, (seed, index, attempt))
             except InputError:
-                if attempt == 0:  # an error that the person would meet alone is reported as such
+                if attempt == 0:  # an error that also occurs without the others is reported as such
                     alone(index, _seed_of(seed, index, 0, 0), ())
                 crowded = index
-                order.sort(key=lambda one: (starts[one] is None, one != crowded))  # it goes first the next time
+                order.sort(key=lambda one: (starts[one] is None, one != crowded))  # first in the next attempt
                 break
         if len(people) == len(plans):
             return tuple(people[index] for index in range(len(plans)))
@@ -94,11 +92,11 @@ def compose_people(
 
 
 def _join(people: list[Motion], alone: Callable[..., Motion], numbers: tuple[int, int, int]) -> Motion:
-    """One more person, clear of the others; `numbers` are seed, index of the person and attempt."""
+    """Adds one person, clear of the others; `numbers` are seed, index of the person and attempt."""
     seed, index, attempt = numbers
     others = tuple(one.pose for one in people)
     for retry in range(TRIES_PER_PERSON):
-        may_touch = not others or attempt == TRIES_FOR_ALL - 1  # other orders of the people are tried before
+        may_touch = not others or attempt == TRIES_FOR_ALL - 1  # only after other orders of the people
         motion = alone(index, _seed_of(seed, index, attempt, retry), others, may_touch=may_touch)
         if all(are_separate(motion.pose, other) for other in others):
             return motion
@@ -106,7 +104,7 @@ def _join(people: list[Motion], alone: Callable[..., Motion], numbers: tuple[int
 
 
 def _subjects(seed: int, given: list[int | None]) -> list[int]:
-    """Each person's number, as given or sampled by the seed, all different. Raises InputError for one given twice."""
+    """Number of each person, as given or sampled, all different. Raises InputError for duplicates."""
     fixed = [check_subject(subject) for subject in given if subject is not None]
     if len(set(fixed)) < len(fixed):
         raise InputError(f"nobody is there twice; the subjects {', '.join(map(str, fixed))} must differ")
@@ -120,7 +118,7 @@ def _subjects(seed: int, given: list[int | None]) -> list[int]:
 
 
 def _seed_of(seed: int, index: int, attempt: int, retry: int) -> int:
-    """The first person's first attempt has the seed of a person alone."""
+    """Seed of an attempt; that of the first person's first attempt is the seed of a person alone."""
     if (index, attempt, retry) == (0, 0, 0):
         return seed
     return int(stream(seed, "company", index, attempt, retry).integers(2**31))

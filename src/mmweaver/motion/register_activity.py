@@ -1,4 +1,4 @@
-"""Activities that a program or a plug-in adds: their name, their verbs, and the function that acts them out."""
+"""Registers activities of programs and plug-ins: name, verbs, and the function that animates them."""
 
 from collections.abc import Callable
 from functools import lru_cache
@@ -18,7 +18,18 @@ GROUP = "mmweaver.activities"
 def register_activity(
     key: str, *, verbs: tuple[str, ...], perform: Callable[..., Any], hands: bool = False, **described: Any
 ) -> None:
-    """Adds an activity; the same once more changes nothing. See `mmweaver.weaver.register.activity`."""
+    """Adds an activity; registering the same one again has no effect. See `mmweaver.weaver.register.activity`.
+
+    Args:
+        key: Key of the activity.
+        verbs: Verbs in lower case that name it.
+        perform: Animates it, see `animation.step_context`.
+        hands: Whether it is a hand activity, overlaid on a body activity.
+        **described: Other fields of `Activity`.
+
+    Raises:
+        InputError: If the key or a verb is taken by another activity, or a verb is not one lower-case word.
+    """
     registry: Any = GESTURES if hands else POSTURES
     meaning = ("", key) if hands else (key, "")
     activity = Activity(key=key, hands=hands, **described)
@@ -40,9 +51,15 @@ def register_activity(
 
 @lru_cache(maxsize=1)
 def load_activity_plugins() -> int:
-    """Calls the functions that installed packages offer in the group mmweaver.activities, once; how many there are.
+    """Loads the plug-ins of installed packages in the group mmweaver.activities, once.
 
-    Each calls `mmweaver.weaver.register.activity`. Raises InputError for one that cannot be imported.
+    Each calls `mmweaver.weaver.register.activity`.
+
+    Returns:
+        Number of plug-ins.
+
+    Raises:
+        InputError: If one cannot be imported.
     """
     found = plugins(GROUP)
     for plugin in found.values():

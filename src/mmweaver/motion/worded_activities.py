@@ -1,4 +1,4 @@
-"""The activities of a TOML file: labels, and sentences that say how each is done.
+"""The activities of a TOML file: labels, and sentences that describe each.
 
 [activities]
 waving = ["a person waves with the left hand", "a person waves with the right hand"]
@@ -16,10 +16,18 @@ MAX_LABELS, MAX_SENTENCES = 1000, 1000
 
 
 def activities_of(content: dict[str, Any], file: Path, *, with_nobody: bool = False) -> dict[str, tuple[str, ...]]:
-    """The sentences of each label in the order of the file, all of them parsed.
+    """The sentences of each label in the order of the file, all of them validated by parsing.
 
-    `with_nobody`: a label may be an empty place, whose sentence is then NOBODY however it is put. Raises InputError
-    where fewer than two labels are given, or a sentence is not understood.
+    Args:
+        content: Content of the TOML file.
+        file: The file, for error messages.
+        with_nobody: Whether a label may stand for an empty scene, whose sentence becomes NOBODY.
+
+    Returns:
+        Sentences by label.
+
+    Raises:
+        InputError: If there are fewer than two labels, or a sentence is not understood.
     """
     table = content.get("activities")
     if not isinstance(table, dict) or len(table) < 2:

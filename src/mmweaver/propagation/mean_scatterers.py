@@ -15,10 +15,3 @@ class MeanEchoes(TensorRecord):
     velocity_mps: Tensor  # (..., echo) radial, positive away from the radar
     direction: Tensor  # (..., echo, 2) direction cosines along x and z
     cross_section_m2: Tensor  # (..., echo) mean
-
-
-@dataclass(frozen=True, kw_only=True)
-class CellEchoes(MeanEchoes):
-    """Echoes that represent resolution cells; a cell keeps its number, and therefore its phase, in all frames."""
-
-    cell: Tensor  # (..., echo) int64

@@ -100,7 +100,7 @@ class Resynthesis:
         joints_m, chest_m = add_micro_motion(
             micro_motion, motion.joints_m[frames].astype(float), frames, self.synthesis.clock, motion.height_m
         )
-        known = motion.visibility.frames(frames)
+        known = motion.visibility[frames]
         return BodyPaths(room, body, self.synthesis.clock, joints_m, chest_m, known=known)
 
     def _room(self, realization: int) -> tuple[PreparedRoom, Tensor, Tensor]:

@@ -1,18 +1,19 @@
 """The rough surfaces of a room as a few hundred patches, over which second bounces are computed."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mmweaver.core.rotations import unit
+from mmweaver.core.tensor_record import TensorRecord
 
 VOXEL_M = 0.25  # patches within a voxel of this size are merged
 GRAZING_COS = 0.02  # lower bound of the cosine at which a face is seen
 
 
 @dataclass(frozen=True, kw_only=True)
-class RoomPatches:
-    """Patches of rough surface that the radar sees, and pieces of edge, which scatter isotropically."""
+class RoomPatches(TensorRecord):
+    """Patches of rough surface that the radar sees, and pieces of edge, which scatter alike in all directions."""
 
     place_m: np.ndarray  # (patch, 3)
     normal: np.ndarray  # (patch, 3) unit, on the radar's side; zero for edges
@@ -74,13 +75,6 @@ class RoomPatches:
         normal = np.zeros_like(place_m)
         return cls(place_m=place_m, normal=normal, cross_section_m2=cross_section_m2, phase=phase, material=material)
 
-    def joined(self, others: "RoomPatches") -> "RoomPatches":
-        """These patches followed by others."""
-        return RoomPatches(**{name: np.concatenate([getattr(self, name), getattr(others, name)]) for name in FIELDS})
-
-    def __getitem__(self, index: np.ndarray) -> "RoomPatches":
-        return RoomPatches(**{name: getattr(self, name)[index] for name in FIELDS})
-
     def merged(self, rng: np.random.Generator) -> "RoomPatches":
         """One patch per voxel with the total cross section, at the place of one of them, sampled by cross section."""
         if not len(self):
@@ -91,12 +85,7 @@ class RoomPatches:
         key = np.log(rng.random(len(self))) / np.maximum(self.cross_section_m2, 1e-12)
         order = np.lexsort((key, voxel))
         last = np.flatnonzero(np.diff(voxel[order], append=-1))
-        chosen = self[order[last]]
-        total = np.bincount(voxel, self.cross_section_m2)
-        return RoomPatches(**{name: getattr(chosen, name) for name in FIELDS} | {"cross_section_m2": total})
-
-
-FIELDS = tuple(RoomPatches.__dataclass_fields__)
+        return replace(self[order[last]], cross_section_m2=np.bincount(voxel, self.cross_section_m2))
 
 
 def roulette(power: np.ndarray, luck: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:

@@ -16,7 +16,7 @@ from torch import Tensor
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
-from mmweaver.propagation.mean_scatterers import CellEchoes, MeanEchoes
+from mmweaver.propagation.mean_scatterers import MeanEchoes
 from mmweaver.propagation.paths import ApparentPoint, Interaction, Paths, StaticPaths
 from mmweaver.propagation.radar_equation import carrier, points_of
 from mmweaver.propagation.static_paths import scattered_paths
@@ -71,7 +71,7 @@ def sample_moving(moving: MeanEchoes, aspect: Tensor, config: RadarConfig, subje
     along_m = torch.einsum("fc,esc->fes", aspect, offset_m)
     scintillation = (carrier(along_m, config) * level).sum(dim=-1)
     amplitude = points_of(moving, _response(config)).amplitude * scintillation
-    return Paths.direct(amplitude, _scatterers(moving, moving.range_m, moving.velocity_mps, 0 * moving.range_m))
+    return Paths.direct(amplitude, radial_scatterers(moving, moving.range_m, moving.velocity_mps, 0 * moving.range_m))
 
 
 def sample_moving_segments(
@@ -100,41 +100,9 @@ def sample_moving_segments(
     range_m = moving.range_m[..., None].expand_as(along_m)
     amplitude = points_of(moving, _response(config)).amplitude[..., None] * level * carrier(along_m, config)
     spots = moving.map(lambda tensor: tensor[:, :, :, None].expand(-1, -1, -1, SPOTS, *tensor.shape[3:]))
-    return Paths.direct(amplitude, _scatterers(spots, range_m, velocity_mps, acceleration)).map(
+    return Paths.direct(amplitude, radial_scatterers(spots, range_m, velocity_mps, acceleration)).map(
         lambda tensor: tensor.flatten(0, 1).flatten(1, 2)
     )
-
-
-def sample_cells(cells: CellEchoes, time_s: Tensor, config: RadarConfig, subject: int) -> Paths:
-    """Samples the phases of cells.
-
-    A cell is one scatterer at its place with the cell's velocity. It has one random phase, which advances with that
-    velocity from frame to frame as from chirp to chirp; at rest it is constant.
-
-    Args:
-        cells: Mean echoes of cells, (frame, segment, cell).
-        time_s: Middle of each segment, (frame, segment), in seconds.
-        config: The radar.
-        subject: Person whose phases they are.
-
-    Returns:
-        Direct paths (frame * segment, cell), amplitudes in sqrt(mW).
-    """
-    amplitude = points_of(cells, _response(config)).amplitude
-    turned = carrier(cells.velocity_mps.double() * time_s[..., None], config)
-    place = _scatterers(cells, cells.range_m, cells.velocity_mps, 0 * cells.range_m)
-    return Paths.direct(amplitude * turned * _cell_phases(cells.cell, subject), place).map(
-        lambda tensor: tensor.flatten(0, 1)
-    )
-
-
-def _cell_phases(cell: Tensor, subject: int) -> Tensor:
-    """Unit phasor of each cell's number, by a hash (splitmix64), since most cells of a room are never used."""
-    mixed = cell.numpy().astype(np.uint64) + stream(subject, "power field", "cells").integers(2**63, dtype=np.uint64)
-    for shift, factor in ((30, 0xBF58476D1CE4E5B9), (27, 0x94D049BB133111EB)):
-        mixed = (mixed ^ (mixed >> np.uint64(shift))) * np.uint64(factor)
-    share = torch.from_numpy(((mixed ^ (mixed >> np.uint64(31))) >> np.uint64(40)).astype(np.float32) / 2**24)
-    return torch.polar(torch.ones_like(share), 2 * math.pi * share)
 
 
 @lru_cache(maxsize=4)
@@ -147,7 +115,9 @@ def place_of(echoes: MeanEchoes) -> Tensor:
     return echoes.range_m.double()[..., None] * _unit(echoes.direction)
 
 
-def _scatterers(echoes: MeanEchoes, range_m: Tensor, velocity_mps: Tensor, acceleration_mps2: Tensor) -> ApparentPoint:
+def radial_scatterers(
+    echoes: MeanEchoes, range_m: Tensor, velocity_mps: Tensor, acceleration_mps2: Tensor
+) -> ApparentPoint:
     """Points in the echoes' directions with radial motion (..., echo)."""
     unit = _unit(echoes.direction)
     return ApparentPoint(

@@ -13,6 +13,7 @@ from mmweaver.core.records import Scene
 from mmweaver.core.rotations import directions, unit
 from mmweaver.core.seeding import stream
 from mmweaver.core.shapes import Values
+from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.propagation.antenna import pattern, scatterer_gain, specular_gain
 from mmweaver.propagation.edge_scattering import find_edges
 from mmweaver.propagation.image_method import SLAB_ECHOES, SpecularReflector, specular_paths, specular_reflectors
@@ -52,8 +53,8 @@ AS_PUBLISHED = replace(
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Struck:
-    """Rays of the radar and the faces that they hit."""
+class _Struck(TensorRecord):
+    """Rays of the radar and the faces that they meet."""
 
     direction: np.ndarray  # (ray, 3) unit
     distance_m: np.ndarray  # (ray,)
@@ -77,9 +78,6 @@ class _Struck:
             material=scene.face_material[face],
             solid_angle=solid_angle,
         )
-
-    def __getitem__(self, which: np.ndarray) -> "_Struck":
-        return _Struck(**{name: getattr(self, name)[which] for name in self.__dataclass_fields__})
 
     @property
     def place_m(self) -> np.ndarray:
@@ -193,13 +191,13 @@ class RayTracedRoom(PreparedRoom):
         cross_section = struck.cross_section_m2 * self._diffuse_share(struck)
         phase = np.exp(2j * np.pi * rng.random(len(cross_section)))
         found = RoomPatches.surfaces(struck.place_m, struck.normal, cross_section, phase, struck.material)
-        return self.patches.joined(found.merged(rng))
+        return RoomPatches.cat([self.patches, found.merged(rng)])
 
     @cached_property
     def patches(self) -> RoomPatches:
-        """Patches over which second bounces of the static paths are computed."""
-        all_of_them = self._patches.joined(self._edge_patches)
-        return all_of_them.merged(stream(self.micro_seed, "room", "patches"))
+        """What second bounces of the static paths are computed over."""
+        both = RoomPatches.cat([self._patches, self._edge_patches])
+        return both.merged(stream(self.micro_seed, "room", "patches"))
 
     def is_clear(self, start_m: np.ndarray, end_m: np.ndarray, margin_m: float) -> np.ndarray:
         """Whether no part of the room lies between two points.

@@ -4,18 +4,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mmweaver.core.tensor_record import TensorRecord
+
 
 @dataclass(frozen=True, kw_only=True)
-class Visibility:
-    """Results of ray casting for one person: visible skin, clear paths over faces, occluded static paths."""
+class Visibility(TensorRecord):
+    """What rays decide about one person: visible skin, clear paths over the room's faces, occluded static paths."""
 
     skin: np.ndarray  # (frame, point) bool: faces the radar, and nothing lies between
     over_faces: np.ndarray  # (frame, face, ghost point) bool: the path over the face is clear, where it was tested
     occluded: np.ndarray  # (frame, static path) bool: the person is in the way
-
-    def frames(self, chosen: np.ndarray) -> "Visibility":
-        """The visibility in selected frames (indices or a mask)."""
-        return Visibility(skin=self.skin[chosen], over_faces=self.over_faces[chosen], occluded=self.occluded[chosen])
 
     def packed(self) -> np.ndarray:
         """Eight values per byte, uint8 (frame, byte)."""

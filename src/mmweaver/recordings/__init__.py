@@ -1,1 +1,1 @@
-"""Recordings by real radars: read and processed."""
+"""Recordings of real radars: reading, plausibility checks and processing."""

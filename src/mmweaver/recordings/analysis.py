@@ -1,4 +1,4 @@
-"""What a recording shows beyond its cube: slow movement, breathing and heart, micro-Doppler, people."""
+"""Analysis of a recording beyond its cube: slow movement, vital signs, micro-Doppler and people."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -15,13 +15,13 @@ from mmweaver.signal.tracking import PersonTrack, track_people
 from mmweaver.signal.vital_signs import Rate, breathing_rate, heart_rate
 
 MIN_VITAL_S = 8.0
-MIN_CONTRAST = 20.0  # of a spectrogram, its peak over its median: less is noise
-FASTEST_DB = -20.0  # of the spectrogram's peak: what counts as the fastest movement
+MIN_CONTRAST = 20.0  # peak / median of a spectrogram; below this it is noise
+FASTEST_DB = -20.0  # relative to the peak of the spectrogram: threshold for the fastest movement
 
 
 @dataclass(frozen=True, kw_only=True)
 class VitalSigns:
-    """Breathing and heart of somebody who sits, at a range; None where a rate could not be looked for."""
+    """Breathing and heart rate of a seated person at a range; None if a rate could not be estimated."""
 
     range_m: float
     breathing: Rate | None
@@ -30,18 +30,18 @@ class VitalSigns:
 
 @dataclass(frozen=True, kw_only=True)
 class RecordingAnalysis:
-    """Everything that `mmweaver process` finds in a recording; parts that it cannot give are None or empty."""
+    """Results of `mmweaver process` beyond cube and points; parts that are not available are None or empty."""
 
     slow_doppler: np.ndarray | None  # (range, doppler), power over all frames
     slow_velocity_mps: np.ndarray | None
-    cells: tuple[SlowTimeCell, ...]  # of most movement, strongest first
+    cells: tuple[SlowTimeCell, ...]  # range bins with the most movement, strongest first
     vital_signs: VitalSigns | None
     micro_doppler: MicroDoppler | None
     people: tuple[PersonTrack, ...]
-    static_share: float  # of the cube's energy
+    static_share: float  # share of the energy that is static clutter
 
     def meta(self) -> dict[str, Any]:
-        """The numbers for meta.json."""
+        """Scalar results for meta.json."""
         return {
             "static_share": round(self.static_share, 4),
             "moving_cells": [
@@ -70,7 +70,7 @@ class RecordingAnalysis:
         }
 
     def arrays(self) -> dict[str, np.ndarray]:
-        """The content of analysis.npz, in SI units."""
+        """Arrays for analysis.npz, in SI units, by name."""
         found: dict[str, np.ndarray] = {}
         if self.slow_doppler is not None and self.slow_velocity_mps is not None:
             found |= {"slow_doppler_power": self.slow_doppler, "slow_velocity_mps": self.slow_velocity_mps}
@@ -92,14 +92,14 @@ class RecordingAnalysis:
 
 
 def analyse_recording(cube: RadarCube, adc: AdcCube | None) -> RecordingAnalysis:
-    """Everything that a recording of this length, with these loops per frame, can show.
+    """Runs every analysis that the length of a recording and its loops per frame permit.
 
     Args:
-        cube: Its cube.
-        adc: Its samples, which micro-Doppler needs; None where it has none.
+        cube: Radar cube.
+        adc: Raw samples, required for micro-Doppler; None if the recording has none.
 
     Returns:
-        The analysis; parts that cannot be given are None or empty.
+        The analysis; parts that are not available are None or empty.
     """
     is_sequence = len(cube.values) > 1
     slow = slow_time_doppler(cube) if is_sequence else None
@@ -116,7 +116,7 @@ def analyse_recording(cube: RadarCube, adc: AdcCube | None) -> RecordingAnalysis
 
 
 def _vital_signs(cells: tuple[SlowTimeCell, ...], period_s: float) -> VitalSigns | None:
-    """Of the cell whose breathing is clearest; None where no cell shows any."""
+    """Vital signs in the cell with the clearest breathing; None if no cell shows any."""
     found: list[VitalSigns] = []
     for cell in cells:
         if len(cell.displacement_m) * period_s < MIN_VITAL_S:
@@ -145,14 +145,14 @@ def _people(cube: RadarCube) -> tuple[PersonTrack, ...]:
 
 
 def _static_share(cube: RadarCube) -> float:
-    """Energy in the Doppler bins of static clutter over all energy."""
+    """Energy in the Doppler bins of static clutter relative to the total."""
     power = range_doppler_power(cube).sum(axis=(0, 1))
     total = float(power.sum())
     return float(power[~moving_doppler(cube)].sum()) / total if total > 0 else 0.0
 
 
 def _fastest(spectrogram: MicroDoppler) -> float:
-    """The highest speed in the spectrogram above -20 dB of its peak."""
+    """Highest speed in the spectrogram above -20 dB of its peak."""
     level = spectrogram.power.max(axis=0)
     shown = level >= level.max() * 10 ** (FASTEST_DB / 10)
     return float(np.abs(spectrogram.radial_velocity_mps[shown]).max())

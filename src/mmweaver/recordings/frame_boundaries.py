@@ -1,9 +1,9 @@
-"""Whether the loops of a recording's frames belong together, from moving echoes.
+"""Detection of a wrong number of loops per frame, from moving echoes.
 
-Loops follow each other after a millisecond or so, frames after tens of them. Within a frame an echo that moves turns by
-the same angle from loop to loop, from frame to frame by any. Where every second step between frames is as those within,
-two frames are one; where steps within a frame are as different as those between frames, a frame is several. Static
-echoes are no evidence, nor are frames without a pause between them.
+Loops follow each other within about a millisecond, frames within tens of milliseconds. A moving echo rotates by the
+same phase from loop to loop within a frame, but by an arbitrary phase across the pause between frames. If every second
+step between frames looks like those within, two frames are actually one; if steps within a frame vary as much as those
+between frames, a frame is actually several. Static echoes and frames without a pause carry no evidence.
 """
 
 from collections.abc import Iterator
@@ -12,19 +12,26 @@ import numpy as np
 
 from mmweaver.core.records import AdcCube
 
-FRAMES = 48  # that are looked at
+FRAMES = 48  # maximum number of frames examined
 PARTS = (2, 3, 4)
-JUMP = 4.0  # times the change of a step within a frame
-MIN_CHANGE = 0.05  # of the moving echoes' power: steps within a frame change by less
+JUMP = 4.0  # minimum ratio of the change across a pause to that within a frame
+MIN_CHANGE = 0.05  # relative to the power of moving echoes: changes within a frame are smaller
 MIN_STEPS = 4  # steps of each kind
 
 
 def loops_of_other_frames(adc: AdcCube) -> Iterator[str]:
-    """A sentence where the frames of the recording have more or fewer loops than its radar's."""
+    """Checks the number of loops per frame.
+
+    Args:
+        adc: Raw samples.
+
+    Yields:
+        A sentence if the recording probably has more or fewer loops per frame than its radar.
+    """
     loops = adc.config.num_loops
     if loops < 2:
         return
-    chirps = adc.samples[:FRAMES, :, 0]  # of one transmitter
+    chirps = adc.samples[:FRAMES, :, 0]  # one transmitter
     within, between = _changes(chirps.reshape(len(chirps), loops, -1))
     for parts in PARTS:
         if (
@@ -42,7 +49,7 @@ def loops_of_other_frames(adc: AdcCube) -> Iterator[str]:
 
 
 def _changes(stream: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """How much each step (frame, loop) differs from the typical one of its frame, and each step to the next frame."""
+    """Deviation of each step (frame, loop) from the typical one of its frame, and of each step to the next frame."""
     num_frames, loops = stream.shape[:2]
     flat = stream.reshape(num_frames * loops, -1)
     flat = flat - flat.mean(axis=0)

@@ -1,7 +1,8 @@
-"""Whether samples and settings of a recording fit each other, and the likelier reading where they do not.
+"""Consistency of samples and settings of a recording, with a more likely interpretation if they disagree.
 
-Real echoes have a positive beat frequency, chirps of one transmitter resemble each other, transmitters see static
-echoes as their neighbours do, and what comes nearer has a negative radial velocity. Each check looks at a few frames.
+Real echoes have positive beat frequencies, chirps of one transmitter resemble each other, transmitters see static
+echoes consistently with their positions, and approaching targets have negative radial velocity. Each check uses a few
+frames only.
 """
 
 from collections.abc import Iterator
@@ -28,21 +29,21 @@ FRAMES_LOOKED_AT = 8
 PROBE_BYTES = 1 << 16
 FULL_SCALE = 32767
 CLIPPED_SHARE = 1e-3
-MIN_CLIPPED = 1000  # counts; of a few counts many samples have the largest
-OTHER_SIZE = 0.5  # times the mean size of the words, below which another type is likelier
-MIN_LIKENESS = 0.4  # of chirps one loop apart
-BETTER_LIKENESS = 0.25  # that another layout must have more
-NO_LIKENESS = 0.05  # of chirps in noise, or of samples packed in a way that is not known
-MIN_ORDER = 0.3  # how well static echoes must fit an order of transmitters to be evidence
-FITTING = 0.6  # how well static echoes fit the right antennas at least
-BETTER_BOARD = 0.15  # that another board's antennas must fit better
-BETTER_ORDER = 0.06  # that another order of transmitters must fit static echoes better
+MIN_CLIPPED = 1000  # counts; at low amplitude many samples share the largest value without clipping
+OTHER_SIZE = 0.5  # ratio of mean magnitudes below which another number type is more likely
+MIN_LIKENESS = 0.4  # minimum correlation of chirps one loop apart
+BETTER_LIKENESS = 0.25  # minimum advantage of another layout
+NO_LIKENESS = 0.05  # correlation in noise, or with an unknown packing
+MIN_ORDER = 0.3  # minimum agreement of static echoes with a transmitter order to count as evidence
+FITTING = 0.6  # minimum agreement of static echoes with the true antennas
+BETTER_BOARD = 0.15  # minimum advantage of another board's antennas
+BETTER_ORDER = 0.06  # minimum advantage of another transmitter order
 SAME_LIKENESS = 0.05
 COMMON_SAMPLES = (64, 96, 100, 128, 200, 240, 256, 304, 320, 384, 400, 512)
-OTHER_PERIOD = 0.15  # of the time between frames
+OTHER_PERIOD = 0.15  # relative deviation of the frame period
 MIN_MOVING_FRAMES = 6
-MIN_TRAVEL = 6.0  # range bins that velocities must add up to: hands and a swaying trunk move by less
-UNFOLDED = 0.6  # of the unambiguous velocity: what travels faster may be seen with the other sign
+MIN_TRAVEL = 6.0  # minimum integrated velocity in range bins: hands and a swaying trunk travel less
+UNFOLDED = 0.6  # of the unambiguous velocity; faster movement may alias to the other sign
 
 
 def implausible(
@@ -53,32 +54,32 @@ def implausible(
     iq_order: str | None = None,
     frame_time_s: PerFrame | None = None,
 ) -> list[str]:
-    """What does not fit in a recording, with the likelier reading.
+    """Checks whether samples and settings of a recording agree.
 
     Args:
-        adc: Its samples.
-        cube: Its cube.
-        path: The .bin that the samples come from.
-        iq_order: As which they were read, of int16 words.
-        frame_time_s: When packets of the frames arrived, (frame,).
+        adc: Raw samples.
+        cube: Radar cube.
+        path: .bin from which the samples were read. Default: not checked.
+        iq_order: I/Q order with which int16 words were read. Default: not from int16 words.
+        frame_time_s: Arrival times of the frames' packets in seconds, (frame,). Default: unknown.
 
     Returns:
-        A sentence each; empty where all is plausible.
+        One sentence per deviation, with the more likely interpretation; empty if all is plausible.
     """
     few = replace(adc, samples=adc.samples[:FRAMES_LOOKED_AT])
     if found := [*_number_type(path)]:
-        return found  # other numbers make every other check meaningless
+        return found  # a wrong number type invalidates every other check
     found = [*_values(adc)]
     if any("constant" in text for text in found):
-        return found  # too little to check more
+        return found  # not enough signal for further checks
     layout = [*wrong_lanes(few, iq_order)] or [*_layout(few), *_period(adc.config, frame_time_s)]
-    layout = layout or [*wrong_iq_order(few, iq_order)]  # meaningless for another radar's chirps
+    layout = layout or [*wrong_iq_order(few, iq_order)]  # meaningless if the chirp layout is wrong
     layout = layout or [*loops_of_other_frames(adc)]
     return [*found, *(layout or [*_transmitters(cube), *_velocity_sign(cube)])]
 
 
 def _number_type(path: Path | None) -> Iterator[str]:
-    """Files of other numbers read as int16."""
+    """Detects files of other number types that were read as int16."""
     if path is None or path.suffix.lower() not in (".bin", ".dat", ".raw"):
         return
     with open_regular(path) as stream:
@@ -91,7 +92,9 @@ def _number_type(path: Path | None) -> Iterator[str]:
         with np.errstate(all="ignore"):
             size = np.abs(values[values != 0])
             is_sane = np.isfinite(size) & (size > 1e-9) & (size < 1e9)
-        if len(size) >= 0.25 * max(len(values), 1) and is_sane.mean() > 0.999:  # a quarter: parts may be 0
+        if (
+            len(size) >= 0.25 * max(len(values), 1) and is_sane.mean() > 0.999
+        ):  # a quarter, since real or imaginary parts may be 0
             yield (
                 f"the file seems to hold numbers of type {name}, but was read as int16; load it with numpy, save it as"
                 " .npy and give --layout"
@@ -100,7 +103,7 @@ def _number_type(path: Path | None) -> Iterator[str]:
 
 
 def _integers(words: np.ndarray) -> str:
-    """Which other whole numbers int16 words are likelier to be; "" for none."""
+    """Other integer type that int16 words more likely represent; "" for none."""
     low, high = words[0::2].astype(int), words[1::2].astype(int)
     if np.ptp(low) and (high == np.where(low < 0, -1, 0)).mean() > 0.99:
         return "numbers of type int32"
@@ -114,7 +117,7 @@ def _integers(words: np.ndarray) -> str:
 
 
 def _values(adc: AdcCube) -> Iterator[str]:
-    """Constant frames and clipped samples."""
+    """Detects constant frames and clipped samples."""
     spread = np.array([np.ptp(np.abs(frame)) for frame in adc.samples[:, ::8]])
     if still := int((spread == 0).sum()):
         yield f"{still} of {len(spread)} frames are constant: lost data, or a file that was filled up"
@@ -129,18 +132,18 @@ def _values(adc: AdcCube) -> Iterator[str]:
 
 
 def _layout(adc: AdcCube) -> Iterator[str]:
-    """Chirps of one transmitter, one loop apart, resemble each other in any room; else the layout is another.
+    """Checks the chirp layout: in any room, chirps of one transmitter one loop apart resemble each other.
 
-    Where they resemble each other after half a loop, too, and more than chirps of different antennas do, the loop is
-    read twice as long as it is.
+    If they also resemble each other after half a loop, and more than chirps of different antennas do, the loop was read
+    twice as long as it is.
     """
     config = adc.config
     if config.num_loops < 2:
         return
     stream = adc.samples if config.is_coded else adc.samples[:, :, list(config.tx_order)]
-    flat = upright(stream, config).reshape(len(stream), -1)  # as the converter gave them
+    flat = upright(stream, config).reshape(len(stream), -1)  # in recorded order
     loop = config.num_slots * config.num_rx * config.num_samples
-    kinds = (flat, flat.mean(axis=0)[None])  # in the mean over frames moving echoes count less
+    kinds = (flat, flat.mean(axis=0)[None])  # the mean over frames suppresses moving echoes
     layouts: dict[int, list[tuple[int, int, int]]] = {}
     for slots, rx, samples in product((1, 2, 3, 4), (1, 2, 3, 4), sorted({*COMMON_SAMPLES, config.num_samples})):
         if (lag := slots * rx * samples) * 4 <= flat.shape[1]:
@@ -185,7 +188,7 @@ def _layout(adc: AdcCube) -> Iterator[str]:
 
 
 def _presets(slots: int, rx: int, samples: int) -> str:
-    """Which presets have such loops, in brackets."""
+    """Presets with this loop layout, in brackets."""
     found = [
         name
         for name, radar in PRESETS.items()
@@ -195,7 +198,7 @@ def _presets(slots: int, rx: int, samples: int) -> str:
 
 
 def _period(config: RadarConfig, frame_time_s: PerFrame | None) -> Iterator[str]:
-    """Packets tell when frames came."""
+    """Compares packet arrival times with the frame period."""
     if frame_time_s is None or len(frame_time_s) < 3:
         return
     period_s = float(np.median(np.diff(frame_time_s)))
@@ -207,14 +210,14 @@ def _period(config: RadarConfig, frame_time_s: PerFrame | None) -> Iterator[str]
 
 
 def _likeness(flat: np.ndarray, lag: int) -> float:
-    """Mean normalised correlation of a stream (frame, sample) with itself a lag later."""
+    """Mean normalised correlation of a stream (frame, sample) with itself at a lag."""
     before, after = flat[:, :-lag], flat[:, lag:]
     common = np.abs(np.vdot(before, after))
     return float(common / max(np.linalg.norm(before) * np.linalg.norm(after), 1e-300))
 
 
 def _transmitters(cube: RadarCube) -> Iterator[str]:
-    """Another board's antennas or another order of transmitters, which fit the static echoes better."""
+    """Searches for another board or transmitter order that agrees better with the static echoes."""
     own = cube.config.tx_order
     cube = replace(cube, values=cube.values[:FRAMES_LOOKED_AT])
     found = agreements(cube)
@@ -236,7 +239,7 @@ def _transmitters(cube: RadarCube) -> Iterator[str]:
 
 
 def _agreements_of_boards(cube: RadarCube) -> dict[str, float]:
-    """How well the static echoes fit the antennas of each board with as many, in the radar's own order."""
+    """Agreement of the static echoes with each board of equal antenna count, in the radar's own order."""
     config, fits = cube.config, {}
     for name, table in ANTENNAS.items():
         if (len(table.tx_halfwaves), len(table.rx_halfwaves)) != (config.num_tx, config.num_rx):
@@ -251,7 +254,7 @@ def _agreements_of_boards(cube: RadarCube) -> dict[str, float]:
 
 
 def _velocity_sign(cube: RadarCube) -> Iterator[str]:
-    """What comes nearer in range must have negative radial velocities, unless it may be too fast for the radar."""
+    """Approaching targets must have negative radial velocity, unless they may alias."""
     config = cube.config
     if config.num_loops < 8 or len(cube.values) < MIN_MOVING_FRAMES:
         return

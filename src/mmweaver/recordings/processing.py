@@ -1,4 +1,4 @@
-"""A recording in; the same cube, points, files and pictures out as for a generated signal."""
+"""Processing of recordings to the same cube, points, files and pictures as generated signals."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -31,9 +31,9 @@ from mmweaver.viz.recording_pages import draw_micro_doppler, draw_people, draw_s
 
 @dataclass(frozen=True, kw_only=True)
 class ProcessedRecording:
-    """A recording's cube and point cloud, and their meta.json."""
+    """Cube, point cloud and analysis of a recording, with the content of meta.json."""
 
-    adc: AdcCube | None  # None where the recording holds a cube and no samples
+    adc: AdcCube | None  # None if the recording contains a cube only
     cube: RadarCube
     points: PointCloud
     meta: dict[str, Any]
@@ -43,9 +43,19 @@ class ProcessedRecording:
     def save(
         self, out: str | Path, *, overwrite: bool = False, extra: dict[str, str] | None = None, pictures: bool = True
     ) -> dict[str, Any]:
-        """Writes radar.npz, points.npz, radar.json, meta.json and the pictures into a folder; returns the meta.
+        """Writes radar.npz, points.npz, radar.json, meta.json and the pictures into a folder.
 
-        `extra`: text files to add, by name. Without `pictures` the previews are left out.
+        Args:
+            out: The folder.
+            overwrite: Whether it may contain files. Default: False.
+            extra: Further text files by name. Default: none.
+            pictures: Whether to draw previews. Default: True.
+
+        Returns:
+            Content of meta.json.
+
+        Raises:
+            InputError: If the folder contains files without `overwrite`, or cannot be written.
         """
         title = Path(self.meta["inputs"]["recording"]["path"]).name
         view = FigureData(title=title, cube=self.cube, points=self.points)
@@ -61,7 +71,7 @@ class ProcessedRecording:
         )
 
     def _write_analysis(self, title: str, pictures: bool, folder: Path) -> None:
-        """analysis.npz and its pages."""
+        """Writes analysis.npz and its pictures."""
         found = self.analysis
         if found is None:
             return
@@ -92,30 +102,31 @@ def process_recording(
     stages: Stages | None = None,
     **reading: Any,
 ) -> ProcessedRecording:
-    """Reads a recording and takes it through range, Doppler, angle and CFAR.
+    """Reads a recording and computes its range-Doppler cube and point cloud.
 
     Args:
         path: The recording, as in `read_recording`.
         radar: Its radar, as in `read_recording`.
-        points: Detector: "cfar", or "firmware" as TI's demo would report it with the settings of the radar's .cfg.
-        static_removal: How static clutter is removed from the cube and its points, see `signal.cube.remove_static`.
-        board: The board whose errors are removed first: a board.json (`mmweaver calibrate`) or a Board.
-        analyse: Whether to look for slow movement, vital signs, micro-Doppler and people.
-        strict: Whether samples that do not fit the settings are refused (`recordings.plausibility`) rather than
-            reported in the meta.
-        stages: Timer of the stages.
+        points: Detector: "cfar", or "firmware" for the points that TI's demo would report with the settings of the
+            radar's .cfg. Default: "cfar".
+        static_removal: Method of static clutter removal, see `signal.cube.remove_static`. Default: "none".
+        board: Board whose errors are removed first: a board.json (`mmweaver calibrate`) or a Board. Default: none.
+        analyse: Whether to estimate slow movement, vital signs, micro-Doppler and people. Default: True.
+        strict: Whether samples that disagree with the settings (`recordings.plausibility`) are refused instead of
+            reported in the meta. Default: False.
+        stages: Timer of the stages. Default: a new one.
         **reading: `range_m`, `range_bins`, `layout`, `axes`, `iq_order` and `tx_order` of `read_recording`.
 
     Returns:
-        Cube, points, analysis and meta. Lost packets of a capture folder are zeros and counted; where it has a
-        RealSense too, the meta gives the photo nearest in time to each radar frame, by the recorder's clock.
+        Cube, points, analysis and meta. Lost packets of a capture folder are zero-filled and counted. If it also
+        contains RealSense photos, the meta lists the one nearest in time to each radar frame, by the recorder's clock.
 
     Raises:
-        InputError: for anything that cannot be read so.
+        InputError: If the recording cannot be read with these settings.
     """
     stages = stages or Stages()
     made_by = read_board(board) if isinstance(board, str | Path) else board
-    if radar is not None:  # a point cloud that this radar cannot have is refused before its samples are read
+    if radar is not None:  # refuse an unsupported detector before reading samples
         check_points(points, as_config(radar))
         _firmware(points, None if isinstance(radar, RadarConfig) else str(radar))
     with stages("read the recording"):
@@ -157,7 +168,7 @@ def process_recording(
 
 
 def _board_metas(recording: Recording) -> dict[str, Any]:
-    """The channel errors that were compensated, and the board whose errors were removed."""
+    """Channel calibration that was applied, and the board whose errors were removed."""
     channels, board = recording.calibration, recording.board
     return {
         "calibration": None
@@ -185,7 +196,7 @@ def _warnings(recording: Recording, strict: bool) -> list[str]:
 
 
 def _firmware(points: str, radar_source: str | None) -> FirmwareSettings | None:
-    """The settings of TI's point cloud of a preset or file, where they are needed. Raises InputError."""
+    """Settings of TI's point cloud if they are needed. Raises InputError."""
     if points != "firmware":
         return None
     return FirmwareSettings() if radar_source is None else load_firmware(radar_source)
@@ -196,7 +207,7 @@ def _digest(path: Path) -> dict[str, str]:
 
 
 def _packets_meta(folder: Path, packets: PacketCapture) -> dict[str, Any]:
-    """Packet counts, arrival times of the frames and the photos nearest to them."""
+    """Packet statistics, arrival times of the frames and the nearest photos."""
     meta = {"packets": packets.report, "frame_clock_s": np.round(packets.frame_time_s, 6)}
     camera = photo_folder(folder)
     if camera is None:

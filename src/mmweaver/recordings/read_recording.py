@@ -1,9 +1,10 @@
-"""The one reader of recordings: raw samples or a cube, in any of the files and folders that are understood.
+"""The single reader of recordings: raw samples or a cube, from any supported file or folder.
 
-radar.npz, or a folder that holds one      a cube with its radar.json (mmweaver generate and process write both)
-folder of mmweaver generate --stream       its whole parts as one cube
+radar.npz, or a folder that contains one   cube with its radar.json (written by mmweaver generate and process)
+folder of mmweaver generate --stream       its complete parts as one cube
 capture folder of mmwave-capture-std       radar.cfg, dca.pcap
-adc_data.bin                               raw samples as a DCA1000 stores them
+adc_data.bin                               raw samples as stored by a DCA1000
+.pcap, .pcapng                             packets of a DCA1000
 .npy                                       raw samples with named axes, or the array of another project (layout)
 folder of .npy                             frames of HuPR
 """
@@ -41,7 +42,13 @@ PACKET_SUFFIXES = (".pcap", ".pcapng")
 
 @dataclass(frozen=True, kw_only=True)
 class CorrectedBoard:
-    """A board whose errors were taken away, and which of them were and were not."""
+    """A board whose errors were removed.
+
+    Attributes:
+        board: The board.
+        corrected: Errors that were removed.
+        left_in: Errors that cannot be removed.
+    """
 
     board: Board
     corrected: tuple[str, ...]
@@ -50,25 +57,25 @@ class CorrectedBoard:
 
 @dataclass(frozen=True, kw_only=True)
 class Recording:
-    """One recording as it was read: its samples, or the cube where the file holds no samples."""
+    """A recording as read: raw samples, or a cube if the file contains no samples."""
 
     path: Path
-    files: dict[str, Path]  # what was read, named as in meta.json
+    files: dict[str, Path]  # input files by their names in meta.json
     config: RadarConfig
     adc: AdcCube | None = None
     stored_cube: RadarCube | None = None
-    compensate_tdm: bool = True  # False where all transmitters send at once
-    iq_order: str | None = None  # of files of int16 pairs
-    axes: str | None = None  # of a .npy, where they were given
-    radar_source: str | None = None  # preset or file that the radar came from
-    first_frame: int = 0  # of the stretch that was read
-    packets: PacketCapture | None = None  # of a capture folder or file
-    calibration: ChannelCalibration | None = None  # whose errors were taken away
-    board: CorrectedBoard | None = None  # and of a board.json
+    compensate_tdm: bool = True  # False if all transmitters send simultaneously
+    iq_order: str | None = None  # of int16 I/Q files
+    axes: str | None = None  # of a .npy with named axes
+    radar_source: str | None = None  # preset or file of the radar
+    first_frame: int = 0  # index of the first frame read
+    packets: PacketCapture | None = None  # of a capture folder or packet file
+    calibration: ChannelCalibration | None = None  # channel calibration that was applied
+    board: CorrectedBoard | None = None  # board whose errors were removed
 
     @cached_property
     def cube(self) -> RadarCube:
-        """The range-Doppler cube (frame, range, doppler, antenna), computed at the first use."""
+        """Range-Doppler cube (frame, range, doppler, antenna), computed at first use."""
         if self.stored_cube is not None:
             return self.stored_cube
         if self.adc is None:
@@ -79,13 +86,13 @@ class Recording:
 
 @dataclass(frozen=True, kw_only=True)
 class RawReading:
-    """How raw samples are read that do not bring it themselves; None keeps the default."""
+    """How to read raw samples without metadata; None keeps the default."""
 
-    radar: str | Path | RadarConfig | None = None  # a preset, a file that describes one, or its configuration
-    layout: str | None = None  # the project whose array a .npy is, one of LAYOUTS
-    axes: str | None = None  # of any other .npy, such as "frame,loop,tx,rx,sample"
-    iq_order: str | None = None  # "iq", "qi" or "interleaved"; default: what the radar's file says
-    tx_order: tuple[int, ...] | None = None  # in which transmitters fire; default: the radar's
+    radar: str | Path | RadarConfig | None = None  # name of a preset, file, or configuration
+    layout: str | None = None  # project that wrote a .npy, a key of LAYOUTS
+    axes: str | None = None  # axes of any other .npy, such as "frame,loop,tx,rx,sample"
+    iq_order: str | None = None  # "iq", "qi" or "interleaved"; default: from the radar's file
+    tx_order: tuple[int, ...] | None = None  # firing order; default: the radar's
 
 
 def read_recording(
@@ -98,24 +105,25 @@ def read_recording(
     mapped: bool = False,
     **samples: Any,
 ) -> Recording:
-    """Reads a recording, or a stretch of its frames; which kind it is follows from the path.
+    """Reads a recording; its kind follows from the path.
 
     Args:
-        path: File or folder, see above.
-        radar: A preset, a file that describes one, or its configuration. A capture folder brings its own, a radar.npz
-            its radar.json, and the arrays of other projects default to the preset of that name.
-        range_m: Range window (near, far) of the cube, m. Default: that of a preset, or all bins of a .cfg.
+        path: File or folder, see the module's table.
+        radar: Name of a preset, file of a radar, or configuration. A capture folder has its own, a radar.npz its
+            radar.json, and arrays of other projects default to the preset of the same name.
+        range_m: Range window (near, far) of the cube in metres. Default: that of a preset, or all bins of a .cfg.
         range_bins: The same as range bins (first, last).
-        frames: Stretch of frames; all by default.
-        mapped: Leaves the cube of a radar.npz on the disk, read-only, until its values are used.
+        frames: Range of frames. Default: all.
+        mapped: Whether the cube of a radar.npz is memory-mapped, read-only. Default: False.
         **samples: `layout`, `axes`, `iq_order` and `tx_order`, see `RawReading`. A .npy needs its `axes`, or a
             `layout`: "hupr" (recognised by its shape), "mmmesh", "rf_genesis" or "cubelearn".
 
     Returns:
-        The samples, or the cube where the file holds no samples.
+        Raw samples, or the cube if the file contains no samples.
 
     Raises:
-        InputError: where the file cannot be read so.
+        InputError: If the file cannot be read with these settings.
+        ValueError: If `frames` has a step or a negative start.
     """
     if frames.step not in (None, 1) or (frames.start or 0) < 0:
         raise ValueError("frames are a stretch that begins with a frame of the recording")
@@ -124,7 +132,7 @@ def read_recording(
 
 
 def _read(path: Path, reading: RawReading, frames: slice, mapped: bool) -> Recording:
-    """The recording with the range bins of its radar."""
+    """Reads a recording with the range bins of its radar."""
     layout, radar = reading.layout, reading.radar
     if layout is not None and (layout not in LAYOUTS or reading.axes is not None):
         raise InputError(f"give a layout ({', '.join(LAYOUTS)}) or axes, not both; got {layout!r} and {reading.axes!r}")
@@ -153,7 +161,7 @@ def _read(path: Path, reading: RawReading, frames: slice, mapped: bool) -> Recor
 
 
 def _read_samples(found: Recording, reading: RawReading, frames: slice) -> Recording:
-    """A .npy with named axes, the packets or the .bin of a DCA1000."""
+    """Reads a .npy with named axes, or the packets or the .bin of a DCA1000."""
     path, config, iq_order = found.path, found.config, reading.iq_order or found.config.lvds_iq_order
     if reading.axes is not None:
         return replace(found, adc=read_adc_npy(path, config, reading.axes, frames=frames), axes=reading.axes)
@@ -166,7 +174,7 @@ def _read_samples(found: Recording, reading: RawReading, frames: slice) -> Recor
 
 
 def _stretch(found: Recording, frames: slice) -> Recording:
-    """Some frames of a recording that was read whole."""
+    """Selects frames of a recording that was read completely."""
     if frames == slice(None):
         return found
     cube = None if found.stored_cube is None else found.stored_cube.select(frames)
@@ -175,14 +183,14 @@ def _stretch(found: Recording, frames: slice) -> Recording:
 
 
 def _calibrated(found: Recording, calibration: ChannelCalibration | None) -> Recording:
-    """Without the channel errors that its .cfg compensates; samples of simultaneous transmitters keep them."""
+    """Applies the channel calibration of the .cfg, except to samples of simultaneous transmitters."""
     if calibration is None or found.adc is None or found.config.is_coded:
         return found
     return replace(found, adc=calibration.compensated(found.adc), calibration=calibration)
 
 
 def _cropped(found: Recording, range_m: tuple[float, float] | None, range_bins: tuple[int, int] | None) -> Recording:
-    """The recording with chosen range bins. Raises InputError for bins that its radar or its stored cube lacks."""
+    """Selects range bins. Raises InputError if the radar or the stored cube lacks them."""
     config = chosen_range(found.config, range_m, range_bins)
     if config == found.config:
         return found
@@ -192,19 +200,19 @@ def _cropped(found: Recording, range_m: tuple[float, float] | None, range_bins: 
 
 
 def without_board(found: Recording, board: Board) -> Recording:
-    """Removes the errors of the board that made a recording.
+    """Removes the errors of the board from a recording.
 
-    A cube is taken back to samples, so what lies outside its range bins does not move in with a range bias.
+    A cube is converted back to samples, so a range bias shifts no echoes from outside its range window into it.
 
     Args:
         found: The recording.
-        board: Its board.
+        board: The board that made it.
 
     Returns:
-        The recording without them, and which were removed.
+        The corrected recording, with a list of the errors that were removed.
 
     Raises:
-        InputError: for the board of another radar.
+        InputError: If the board does not fit the radar.
     """
     samples = found.adc
     if samples is None:
@@ -223,12 +231,22 @@ def without_board(found: Recording, board: Board) -> Recording:
 
 
 def as_config(radar: str | Path | RadarConfig) -> RadarConfig:
-    """A radar by its preset's name, its file or itself. Raises InputError."""
+    """Resolves a radar.
+
+    Args:
+        radar: Name of a preset, file of a radar, or configuration.
+
+    Returns:
+        The configuration.
+
+    Raises:
+        InputError: If the name is unknown or the file is malformed.
+    """
     return radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
 
 
 def _read_folder(path: Path, reading: RawReading, frames: slice, mapped: bool) -> Recording | None:
-    """A folder's recording; None for a folder of HuPR's frames. Raises InputError where it is none of them."""
+    """Reads the recording in a folder; None for frames of HuPR. Raises InputError if it contains no recording."""
     if (path / CUBE).is_file():
         return _stretch(_read_cube(path / CUBE, reading.radar, mapped), frames)
     if is_stream(path):
@@ -270,7 +288,7 @@ def _read_capture(path: Path, reading: RawReading, frames: slice) -> Recording:
 
 
 def _read_layout(found: Recording, layout: str) -> Recording:
-    """The array of another project: a cube (HuPR) or samples."""
+    """Reads the array of another project: a cube (HuPR) or samples."""
     read = LAYOUTS[layout](found.path, found.config)
     if isinstance(read, RadarCube):
         cube = replace(read, values=np.asarray(read.values * tdm_compensation(read.config)))

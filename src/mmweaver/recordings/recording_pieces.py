@@ -1,4 +1,4 @@
-"""A recording of any length, read in pieces where its file allows."""
+"""Recordings of any length, read in pieces if the file format permits."""
 
 from functools import cached_property
 from pathlib import Path
@@ -13,14 +13,23 @@ from mmweaver.recordings.read_recording import Recording, read_recording
 
 
 class RecordingPieces:
-    """The frames of a recording, read on demand.
+    """Frames of a recording, read on demand.
 
-    An adc_data.bin, packets of a DCA1000, a .npy whose first axis is "frame" and a folder of `generate --stream` are
-    read in part, a radar.npz is mapped; anything else is read at once, at the first use.
+    An adc_data.bin, DCA1000 packets, a .npy with "frame" as its first axis and a folder of `generate --stream` are read
+    in part; a radar.npz is memory-mapped; anything else is read completely at first use.
     """
 
     def __init__(self, path: str | Path, radar: Any = None, **how: Any):
-        """Arguments as those of `read_recording`. Raises InputError where the first frame cannot be read so."""
+        """Opens a recording.
+
+        Args:
+            path: The recording, as in `read_recording`.
+            radar: Its radar, as in `read_recording`.
+            **how: Further arguments of `read_recording`.
+
+        Raises:
+            InputError: If the first frame cannot be read with these settings.
+        """
         self.path, self._radar, self._how = Path(path), radar, how
         self._in_part = self._is_read_in_part(how.get("axes"))
         first = self._recording(slice(0, 1)) if self._in_part else None
@@ -41,12 +50,22 @@ class RecordingPieces:
 
     @property
     def num_values_a_frame(self) -> int:
-        """Complex numbers of a frame of the cube."""
+        """Complex values per frame of the cube."""
         one = self._whole if self._first is None else self._first
         return one.values[0].size
 
     def cube(self, frames: range) -> RadarCube:
-        """The range-Doppler cube of a stretch of frames. Raises InputError where they cannot be read."""
+        """Computes the range-Doppler cube of consecutive frames.
+
+        Args:
+            frames: Indices of the frames.
+
+        Returns:
+            Cube, (frame, range, doppler, antenna).
+
+        Raises:
+            InputError: If they cannot be read.
+        """
         stretch = slice(frames.start, frames.stop)
         if self._in_part:
             return self._recording(stretch).cube

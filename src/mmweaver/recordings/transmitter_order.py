@@ -1,10 +1,10 @@
-"""In which order the transmitters of a TDM-MIMO recording fired, from its static echoes.
+"""Firing order of the transmitters of a TDM-MIMO recording, estimated from static echoes.
 
-Receivers of one transmitter are sampled in the same chirp, so their correlation at each horizontal distance is right
-whatever the order. Antennas of two transmitters at the same distance must be correlated alike, cell by cell, up to a
-phase that all cells share (channel errors); in a wrong order they are not. Receivers in one row say nothing of heights,
-whose phase is then taken for one that cells share, too; receivers in two rows (AOP, ODS) also tell transmitters apart
-that lie above each other. Many scatterers in a cell do not matter, as they would to a plane wave.
+Receivers of one transmitter are sampled in the same chirp, so their correlation at each baseline is correct in any
+order. Antennas of two transmitters at the same baseline must show the same correlation, cell by cell, up to a phase
+common to all cells (channel errors); in a wrong order they do not. Receivers in one row carry no information on height,
+whose phase is then treated as common to all cells as well; receivers in two rows (AOP, ODS) also distinguish
+transmitters above one another. Unlike a plane-wave fit, this tolerates several scatterers per cell.
 """
 
 from itertools import permutations
@@ -14,19 +14,19 @@ import numpy as np
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import RadarCube
 
-CLEAR = 30.0  # times the power at the other velocities: cells that are static echoes
+CLEAR = 30.0  # static cells: minimum power relative to other velocities
 MIN_CELLS = 12
-Baseline = tuple[float, float]  # across and up, in half wavelengths
+Baseline = tuple[float, float]  # horizontal and vertical, in half wavelengths
 
 
 def agreements(cube: RadarCube) -> dict[tuple[int, ...], float]:
-    """How well the transmitters fit the receivers in each possible firing order.
+    """Agreement of transmitters and receivers for each possible firing order.
 
     Args:
         cube: The cube, read in the order of its radar.
 
     Returns:
-        {order: agreement from 0 to 1}; empty without evidence: one transmitter, decoded ones, or too few static cells.
+        Agreement from 0 to 1 by order; empty without evidence (one transmitter, a coded radar, too few static cells).
     """
     config = cube.config
     still = _static_cells(cube)
@@ -36,13 +36,13 @@ def agreements(cube: RadarCube) -> dict[tuple[int, ...], float]:
     fired, found = list(config.tx_order), {}
     for order in permutations(range(config.num_tx)):
         moved = np.empty_like(signal)
-        moved[:, list(order)] = signal[:, fired]  # the slot of transmitter fired[s] would be that of order[s]
+        moved[:, list(order)] = signal[:, fired]  # assigns the slot of transmitter fired[s] to order[s]
         found[order] = _agreement(moved, config)
     return found
 
 
 def _static_cells(cube: RadarCube) -> np.ndarray:
-    """Cells (cell, antenna) of unit norm: each counts alike."""
+    """Static cells (cell, antenna), each normalised to unit norm for equal weight."""
     middle = cube.config.num_loops // 2
     still = cube.values[:, :, middle].mean(axis=0)
     power = (np.abs(still) ** 2).sum(axis=1)
@@ -52,7 +52,7 @@ def _static_cells(cube: RadarCube) -> np.ndarray:
 
 
 def _agreement(signal: np.ndarray, config: RadarConfig) -> float:
-    """Of cells (cell, transmitter, receiver): the coherence of what two transmitters see with what one sees."""
+    """Coherence of baselines between transmitters with those within one, from cells (cell, tx, rx)."""
     place = (2 * config.antenna_position_m / config.wavelength_m).reshape(*signal.shape[1:], 3)[..., [0, 2]]
     within = _correlations(signal, place, [(tx, tx) for tx in range(config.num_tx)])
     one_row = all(up == 0 for _, up in within)
@@ -75,7 +75,7 @@ def _agreement(signal: np.ndarray, config: RadarConfig) -> float:
 
 
 def _correlations(signal: np.ndarray, place: np.ndarray, pairs: list[tuple[int, int]]) -> dict[Baseline, np.ndarray]:
-    """Products of antennas (cell,) by their distance, mean over all receivers of pairs of transmitters."""
+    """Products of antenna pairs (cell,) by baseline, averaged over receivers and pairs of transmitters."""
     found: dict[Baseline, list[np.ndarray]] = {}
     for tx, other in pairs:
         for one in range(signal.shape[2]):

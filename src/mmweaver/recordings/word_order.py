@@ -1,7 +1,7 @@
-"""Whether the words of a DCA1000 were read in their order: lanes, and I and Q; else the order that fits the samples.
+"""Word order of DCA1000 recordings: number of lanes and order of I and Q, checked on the samples.
 
-Real echoes have a positive beat frequency and few ranges. An order is advised only where the samples read so pass the
-same checks; one that would merely silence them is not.
+Real echoes have positive beat frequencies and occupy few ranges. Another order is suggested only if the samples read
+with it pass the same checks.
 """
 
 from collections.abc import Iterator
@@ -14,14 +14,22 @@ from mmweaver.core.shapes import Array
 from mmweaver.io.dca1000 import IQ_ORDERS, LANES, adc_of_words, words_of
 from mmweaver.signal.windows import hann
 
-MIRRORED_DB = 8.0  # more energy in the last quarter of the beat frequencies than in the first
-LIKELIER_DB = 6.0  # less of it than in any other order, at which I Q I Q, or none of it, is likelier
-SCATTERED = 0.75  # times the ranges that echoes fill in another layout of the lanes, at which that is likelier
+MIRRORED_DB = 8.0  # excess energy in the last quarter of the beat frequencies over the first
+LIKELIER_DB = 6.0  # minimum advantage over any other order for or against I Q I Q
+SCATTERED = 0.75  # ratio of occupied range bins below which the other lane layout is more likely
 WRITTEN = {"iq": "I I Q Q", "qi": "Q Q I I", "interleaved": "I Q I Q"}
 
 
 def wrong_lanes(adc: AdcCube, iq_order: str | None) -> Iterator[str]:
-    """Words of two lanes read as four, or the other way round: the spectrum of each chirp is scattered."""
+    """Detects words of two lanes read as four, or vice versa, which scatters the spectrum of each chirp.
+
+    Args:
+        adc: Samples as read.
+        iq_order: I/Q order with which int16 words were read; None if not from int16 words.
+
+    Yields:
+        A sentence if the other number of lanes is more likely.
+    """
     config = adc.config
     if iq_order in (None, "interleaved") or config.num_rx != LANES or not config.complex_samples:
         return
@@ -35,7 +43,15 @@ def wrong_lanes(adc: AdcCube, iq_order: str | None) -> Iterator[str]:
 
 
 def wrong_iq_order(adc: AdcCube, iq_order: str | None) -> Iterator[str]:
-    """I and Q the wrong way round, or in turn, a sentence; `iq_order`: as which int16 words were read."""
+    """Detects swapped or interleaved I and Q.
+
+    Args:
+        adc: Samples as read.
+        iq_order: I/Q order with which int16 words were read; None if not from int16 words.
+
+    Yields:
+        A sentence if another order is more likely.
+    """
     if not adc.config.complex_samples:
         return
     if iq_order is None:
@@ -64,7 +80,14 @@ def wrong_iq_order(adc: AdcCube, iq_order: str | None) -> Iterator[str]:
 
 
 def mirrored_db(adc: AdcCube) -> float:
-    """How much more energy lies at negative beat frequencies than at positive ones."""
+    """Compares energy at negative and positive beat frequencies.
+
+    Args:
+        adc: Raw samples.
+
+    Returns:
+        Energy within a quarter of the sample rate below zero relative to that above zero, in dB.
+    """
     level = _power(adc).mean(axis=(0, 1, 2, 3))
     num = adc.config.num_samples
     near = max(num // 4, 3)
@@ -82,14 +105,14 @@ def _alone(adc: AdcCube) -> AdcCube:
 
 
 def _again(adc: AdcCube, iq_order: str, other: str, *, lanes: int | None = None) -> AdcCube:
-    """The samples as they would be if their words were read in another order, or as of other lanes."""
+    """The samples that result from reading the same words in another order or number of lanes."""
     words, _ = words_of(adc, iq_order=iq_order)
     config = adc.config if lanes is None else replace(adc.config, lvds_lanes=lanes)
     return adc_of_words(words.reshape(-1), config, iq_order=other)
 
 
 def _occupied(adc: AdcCube) -> float:
-    """The share of the range bins that the energy of a chirp fills, mean over chirps."""
+    """Effective share of the range bins occupied by the energy of a chirp, averaged over chirps."""
     power = _power(adc)
     power = power.reshape(-1, power.shape[-1])
     return float((power.sum(axis=1) ** 2 / np.maximum((power**2).sum(axis=1), 1e-300)).mean() / power.shape[1])

@@ -1,1 +1,1 @@
-"""A photo with depth in, the room it shows out."""
+"""Reconstructs the room that a photo with depth shows."""

@@ -18,7 +18,7 @@ CLASS_OF_MATERIAL: dict[str, str] = _TABLES["class_of_material"]
 
 
 def _inverted(key: str) -> dict[str, str]:
-    """What a table says of each class."""
+    """A table of `coco_stuff.toml` inverted: from class to its entry."""
     return {name: value for value, names in _TABLES[key].items() for name in names}
 
 
@@ -26,7 +26,13 @@ MATERIAL, LANDMARKS, ALIASES = map(_inverted, ("materials", "landmarks", "aliase
 
 
 def coco_class(label: str) -> str | None:
-    """COCO-Stuff's name of a model's label, such as "sofa, couch, lounge" or "wall-other-merged"; None if it has none.
+    """Maps a model's label to the COCO-Stuff class of the same meaning.
+
+    Args:
+        label: Label of any model, such as "sofa, couch, lounge" or "wall-other-merged"; synonyms separated by commas.
+
+    Returns:
+        The class name, or None if there is no equivalent.
 
     >>> coco_class("sofa, couch, lounge"), coco_class("ceiling-merged"), coco_class("LABEL_7")
     ('couch', 'ceiling-other', None)
@@ -41,5 +47,12 @@ def coco_class(label: str) -> str | None:
 
 
 def material_of(name: str) -> str | None:
-    """The material that a COCO-Stuff class implies; None where it implies none."""
+    """The ITU-R P.2040 material implied by a COCO-Stuff class.
+
+    Args:
+        name: COCO-Stuff class.
+
+    Returns:
+        Name of the material, or None if the class implies none.
+    """
     return MATERIAL.get(name)

@@ -1,4 +1,4 @@
-"""A room and the people in it as a radar sees them that does not stand at the camera."""
+"""A room and its people in the frame of a radar that does not stand at the camera."""
 
 from dataclasses import replace
 
@@ -13,10 +13,20 @@ WIDEST_RAD = np.radians(60.0)  # from the boresight, in azimuth
 
 
 def scene_seen_from(scene: Scene, pose: RadarPose) -> Scene:
-    """The scene in the frame of a radar at `pose`; the photo stays the camera's.
+    """Transforms a scene into the frame of a radar at another pose; the photo remains the camera's.
 
-    Floor plan, seats and landmarks, which plan motions in the camera's frame, are left out. `floor_z_m` is the floor's
-    height straight below the radar. Raises InputError where the radar would stand under the floor.
+    Floor plan, seats and landmarks, which plan motions in the camera's frame, are dropped. `floor_z_m` becomes the
+    floor's height straight below the radar.
+
+    Args:
+        scene: The room in the frame of a radar at the camera.
+        pose: Pose of the radar relative to the camera.
+
+    Returns:
+        The scene in the radar's frame; `scene` itself if the radar is at the camera.
+
+    Raises:
+        InputError: If the radar would be below the floor.
     """
     if pose.is_at_camera:
         return scene
@@ -41,14 +51,30 @@ def scene_seen_from(scene: Scene, pose: RadarPose) -> Scene:
 
 
 def people_seen_from(people: tuple[PoseSequence, ...], pose: RadarPose) -> tuple[PoseSequence, ...]:
-    """The same motions with joints in the frame of a radar at `pose`."""
+    """Transforms motions into the frame of a radar at another pose.
+
+    Args:
+        people: Motions with joints in metres in the frame of a radar at the camera.
+        pose: Pose of the radar relative to the camera.
+
+    Returns:
+        The motions with joints in the radar's frame.
+    """
     if pose.is_at_camera:
         return people
     return tuple(replace(one, joints_m=pose.seen(one.joints_m)) for one in people)
 
 
 def unseen_notes(people: tuple[PoseSequence, ...], range_window_m: tuple[float, float]) -> tuple[str, ...]:
-    """A sentence for each person who is outside the radar's range or beam in some frames; poses in its frame."""
+    """Reports each person who leaves the radar's range window or its beam of +-60 degrees.
+
+    Args:
+        people: Motions in the radar's frame; the pelvis counts.
+        range_window_m: Nearest and farthest range in metres.
+
+    Returns:
+        A sentence per person who is outside in some frames.
+    """
     notes = []
     for number, person in enumerate(people, 1):
         pelvis_m = person.joints_m[:, joint("pelvis")]

@@ -1,4 +1,4 @@
-"""The files of a room in a folder: photo, depth and camera, by their names."""
+"""The files of a room in a folder by their names: photo, depth and camera."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +15,7 @@ COLOUR, DEPTH, CAMERA = (
 
 @dataclass(frozen=True, kw_only=True)
 class RoomFiles:
-    """A photo, its depth and its camera."""
+    """Paths of a photo, its depth and, if present, its camera file."""
 
     rgb: Path
     depth: Path
@@ -23,7 +23,15 @@ class RoomFiles:
 
     @classmethod
     def find(cls, folder: Path) -> "RoomFiles":
-        """The files of a folder, by name. Raises InputError where the photo or the depth is missing."""
+        """Finds the files of a room by name.
+
+        Args:
+            folder: Folder with rgb.png (or .jpg, .jpeg, .webp), depth.png (or .npy, .tif, .tiff), and camera.json if
+                known.
+
+        Raises:
+            InputError: If the photo or the depth is missing.
+        """
         check_exists(folder, f"a folder with {COLOUR[0]} and {DEPTH[0]}")
         rgb = next((folder / name for name in COLOUR if (folder / name).is_file()), None)
         depth = next((folder / name for name in DEPTH if (folder / name).is_file()), None)
@@ -37,12 +45,12 @@ class RoomFiles:
 
     @property
     def options(self) -> list[str]:
-        """The same on a command line."""
+        """The files as command-line options."""
         camera = [] if self.camera is None else ["--camera", str(self.camera)]
         return ["--rgb", str(self.rgb), "--depth", str(self.depth), *camera]
 
     @property
     def call(self) -> str:
-        """The same in Python."""
+        """The files as a Python call of `read_room`."""
         camera = "" if self.camera is None else f", {str(self.camera)!r}"
         return f"read_room({str(self.rgb)!r}, {str(self.depth)!r}{camera})"

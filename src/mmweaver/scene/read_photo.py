@@ -33,22 +33,26 @@ def read_photo(
     segmenter: str | None = None,
     sam: str | None = None,
 ) -> tuple[RgbdPhoto, tuple[str, ...]]:
-    """Reads a colour picture, its depth and its camera; returns the photo and the assumptions, as sentences.
+    """Reads a colour picture with its depth and camera.
 
     Args:
-        rgb: any picture that Pillow reads; rotated upright by its EXIF tag.
-        depth: a 16-bit PNG in camera.json's `depth_unit_m` (0.001 by default, 0 = hole), a .npy in metres (float) or
+        rgb: Any picture that Pillow reads; rotated upright by its EXIF tag.
+        depth: A 16-bit PNG in camera.json's `depth_unit_m` (0.001 by default, 0 = hole), a .npy in metres (float) or
             in that unit (integers), or a TIFF of either; the same view as the colour picture. Where one has more
             pixels than the other, both are resampled to one size.
         camera: camera.json with fx, fy, cx, cy in pixels of the colour picture. None takes the focal length of the
-            picture's EXIF, else what the depth model estimates, else the field of view of a RealSense D455.
-        depth_model: folder or Hub name of a metric depth model, or "auto", where there is no `depth`; a Prompt Depth
+            picture's EXIF, else the estimate of the depth model, else the field of view of a RealSense D455.
+        depth_model: Folder or Hub name of a metric depth model, or "auto", used if there is no `depth`; a Prompt Depth
             Anything refines a coarse `depth`.
-        classes: a picture of COCO-Stuff's class numbers (see `class_file`), or
-        segmenter: folder or Hub name of a segmentation model, or "builtin" for the built-in one.
-        sam: folder or Hub name of a SAM model that refines the segmenter's edges.
+        classes: Picture of COCO-Stuff class numbers, see `class_file`; excludes `segmenter` and `sam`.
+        segmenter: Folder or Hub name of a segmentation model, or "builtin" for the built-in one.
+        sam: Folder or Hub name of a SAM model that refines the segmenter's edges.
 
-    Raises InputError, in one line, for whatever cannot be used.
+    Returns:
+        The photo, and the assumptions made, as sentences.
+
+    Raises:
+        InputError: If a file or model cannot be used, in one line.
     """
     rgb = _existing(rgb, "--rgb")
     camera = None if camera is None else _existing(camera, "--camera")
@@ -97,7 +101,20 @@ def read_photo(
 def classes_of(
     photo: RgbdPhoto, *, classes: str | Path | None = None, segmenter: str | None = None, sam: str | None = None
 ) -> ClassMask | None:
-    """The class mask of a photo, from a file or by a model; None where neither is given."""
+    """The class mask of a photo, from a file or by a model.
+
+    Args:
+        photo: The photo.
+        classes: Picture of class numbers, see `class_file`.
+        segmenter: Folder or Hub name of a segmentation model, or "builtin".
+        sam: Folder or Hub name of a SAM model that refines the segmenter's edges.
+
+    Returns:
+        The mask; None if neither `classes` nor `segmenter` is given.
+
+    Raises:
+        InputError: If `classes` is combined with a model, `sam` lacks a segmenter, or a file or model cannot be used.
+    """
     if classes is not None and (segmenter or sam):
         raise InputError("classes already gives the classes; leave out segmenter and sam")
     if sam is not None and segmenter is None:
@@ -116,7 +133,7 @@ def _has_aspect(size: tuple[int, int], depth_m: DepthPixels) -> bool:
 
 
 def _lies_as_stored(rgb_size: tuple[int, int], depth_m: DepthPixels, colours: Turned, depths: Turned) -> bool:
-    """Whether the depth lies on its side as the colours did in their file: its shape shows it, and it has no tag."""
+    """Whether the depth is rotated as the colours are stored: its shape shows it, and it has no EXIF tag."""
     is_quarter = colours.orientation >= 5 and depths.orientation == 1
     return is_quarter and not _has_aspect(rgb_size, depth_m) and _has_aspect(colours.stored_size, depth_m)
 
@@ -131,7 +148,7 @@ def _check_same_view(rgb: Path, depth: Path, rgb_size: tuple[int, int], depth_m:
 
 
 def _check_turned(rgb: Path, depth: Path, colours: Turned, depths: Turned) -> None:
-    """Raises InputError where the EXIF tag of the colours turns them, and no sign says whether the depth is upright.
+    """Rejects depth of ambiguous orientation: the colours have an EXIF rotation that the depth's shape cannot confirm.
 
     A quarter turn is visible in the depth's shape; a half turn and a mirror image are not.
     """
@@ -145,7 +162,15 @@ def _check_turned(rgb: Path, depth: Path, colours: Turned, depths: Turned) -> No
 
 
 def to_common_size(pixels: np.ndarray, depth_m: np.ndarray) -> tuple[RgbPixels, DepthPixels, tuple[str, ...]]:
-    """Both at the depth's size, or an integer multiple of a small one; depth is repeated, never interpolated."""
+    """Resamples colours and depth to one size: the depth's, or an integer multiple of a small one.
+
+    Args:
+        pixels: Colour picture, uint8, (rows, columns, 3).
+        depth_m: Depth in metres, (height, width); pixels are repeated, never interpolated.
+
+    Returns:
+        Colours and depth at one size, and a sentence that reports the resampling if there was any.
+    """
     from PIL import Image
 
     (rows, columns), (height, width) = pixels.shape[:2], depth_m.shape
@@ -164,9 +189,9 @@ def to_common_size(pixels: np.ndarray, depth_m: np.ndarray) -> tuple[RgbPixels, 
 def _default_intrinsics(
     rgb_size: tuple[int, int], size: tuple[int, int], turned: Turned, focal_px: float | None
 ) -> tuple[CameraIntrinsics, str]:
-    """Intrinsics of a picture resampled from `rgb_size` to `size`, and the sentence that says what they come from.
+    """Intrinsics of a picture resampled from `rgb_size` to `size`, and the sentence that reports their source.
 
-    `focal_px`: what a depth model estimated on the picture as it was.
+    `focal_px` is the depth model's estimate in pixels of the original picture.
     """
     if turned.focal_35mm is not None:
         camera = resized(lens_intrinsics(*rgb_size, turned.focal_35mm), *size)
@@ -182,7 +207,7 @@ def _default_intrinsics(
 
 
 def _assumptions(lens_note: str | None, turned: Turned | None, *, depth_lies: bool) -> tuple[str, ...]:
-    """`turned`: how the colours of a photo with a depth file lay."""
+    """Sentences on the lens and the orientation; `turned` is that of the colours of a photo with a depth file."""
     notes = [] if lens_note is None else [lens_note]
     if turned is not None and turned.orientation != 1:
         said = "was turned with it" if depth_lies else "was taken as upright"

@@ -1,9 +1,8 @@
 """One photo with depth of a ROS bag: a RealSense's own recording (.bag of its viewer), or topics of its ROS driver.
 
-ROS 1 (.bag) or ROS 2: a .db3 or .mcap, or the folder that `ros2 bag record` writes.
-
-Needs rosbags (extra 'capture'). Depth that is aligned with the colours is taken as it is; else the photo is the depth
-camera's, coloured by reprojection, as that of a capture folder. Facts of the format: librealsense's ROS bag layout.
+ROS 1 (.bag) or ROS 2: a .db3 or .mcap, or the folder that `ros2 bag record` writes. Needs rosbags (extra `capture`).
+Depth that is aligned with the colours is used unchanged; otherwise the photo has the depth camera's view, coloured by
+reprojection as in a capture folder. Facts of the format: librealsense's ROS bag layout.
 """
 
 from collections.abc import Callable
@@ -33,14 +32,22 @@ ROS2_FOLDER = "metadata.yaml"  # what a folder of `ros2 bag record` holds
 
 
 def is_bag(path: Path) -> bool:
-    """Whether a path names a ROS bag."""
+    """Whether a path is a ROS bag: a .bag, .db3 or .mcap file, or a folder with metadata.yaml."""
     return (path.suffix.lower() in (*ROS1, *ROS2) and path.is_file()) or (path / ROS2_FOLDER).is_file()
 
 
 def read_bag_photo(path: Path, index: int = 0) -> CapturedPhoto:
-    """Photo `index` of a bag, by its depth pictures, with the colour picture nearest in time.
+    """Reads one photo of a ROS bag.
 
-    Raises InputError where rosbags is not installed, the file is no bag, or it holds no such photo with its cameras.
+    Args:
+        path: The bag.
+        index: Number of the depth picture, from 0; the colour picture is the nearest in time, within 0.1 s.
+
+    Returns:
+        The photo with the assumptions made.
+
+    Raises:
+        InputError: If rosbags is not installed, the file is not a bag, or it has no such photo with its cameras.
     """
     opened, read = _reader(path)
     for file in sorted(path.iterdir()) if path.is_dir() else (path,):
@@ -77,7 +84,10 @@ def read_bag_photo(path: Path, index: int = 0) -> CapturedPhoto:
 
 
 def _reader(path: Path) -> tuple[Any, Callable[..., Any]]:
-    """What opens a bag, and what reads its messages. Raises InputError where rosbags is not installed."""
+    """The class that opens a bag and the function that deserializes its messages.
+
+    Raises InputError if rosbags is not installed.
+    """
     need("capture", str(path), "rosbags")
     from rosbags import rosbag1, rosbag2
     from rosbags.typesys import Stores, get_typestore
@@ -88,7 +98,7 @@ def _reader(path: Path) -> tuple[Any, Callable[..., Any]]:
 
 
 def _topics(bag: Any) -> dict[str, list[str]]:
-    """Topics of pictures by what they hold. Raises InputError where one kind is missing."""
+    """Picture topics by content. Raises InputError if depth or colour is missing."""
     names = sorted({one.topic for one in bag.connections if one.msgtype == IMAGE})
     depth = [name for name in names if "depth" in name.lower()]
     colour = [name for name in names if name not in depth and ("color" in name.lower() or "rgb" in name.lower())]
@@ -111,7 +121,7 @@ def _message(bag: Any, read: Callable[..., Any], topic: str, index: int) -> tupl
 
 
 def _nearest(bag: Any, read: Callable[..., Any], topic: str, time_ns: int) -> tuple[Any, int]:
-    """The message of a topic nearest to a time, and how far it is, in nanoseconds."""
+    """The message of a topic nearest in time, and the difference in nanoseconds."""
     best: tuple[int, Any, Any] | None = None
     for connection, own_ns, raw in bag.messages(_connections(bag, topic)):
         apart = abs(own_ns - time_ns)
@@ -125,7 +135,7 @@ def _nearest(bag: Any, read: Callable[..., Any], topic: str, time_ns: int) -> tu
 
 
 def _camera(bag: Any, read: Callable[..., Any], topic: str, path: Path) -> CameraIntrinsics:
-    """The camera of a topic of pictures: the camera_info whose name begins most alike."""
+    """Intrinsics of a picture topic: from the camera_info with the longest common prefix."""
     found = [one for one in bag.connections if one.msgtype == CAMERA]
     if not found:
         raise InputError(f"{path} holds no camera_info, so its cameras are not known")
@@ -142,7 +152,7 @@ def _camera(bag: Any, read: Callable[..., Any], topic: str, path: Path) -> Camer
 
 
 def _shared_parts(one: str, other: str) -> int:
-    """How many parts of two topics agree from the beginning."""
+    """Length of the common prefix of two topics, in parts."""
     pairs = zip(one.strip("/").split("/"), other.strip("/").split("/"), strict=False)
     return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
 

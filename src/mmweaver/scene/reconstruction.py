@@ -1,4 +1,4 @@
-"""Reconstructs a room from a photo, or several of it. Read `reconstruct` first: it names the steps in order."""
+"""Reconstructs a room from one or several photos. Start with `reconstruct`, which lists the steps in order."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -23,23 +23,26 @@ from mmweaver.scene.photo.depth_grid import GridBool, make_grid
 from mmweaver.scene.photo.posed_photo import PosedPhoto
 from mmweaver.scene.single_view import SingleView, see
 
-DEFAULT_FLOOR = "concrete"  # where none is seen
+DEFAULT_FLOOR = "concrete"  # if no floor is visible
 _FLOOR_MARGIN_M = 0.3
 _MIN_FLOOR_M = 3.0  # length and width of the floor at least
 
 
 def reconstruct(photo: RgbdPhoto, others: Sequence[PosedPhoto] = (), *, assumptions: tuple[str, ...] = ()) -> Scene:
-    """The room of one or several photos, in the frame of a level radar that stands at the first photo's camera.
+    """Reconstructs the room of one or several photos, in the frame of a level radar at the first photo's camera.
 
     Args:
-        photo: the scene's picture.
-        others: further photos of the room.
-        assumptions: are put before those made here.
+        photo: First photo, with depth.
+        others: Further photos of the room, with poses relative to the first.
+        assumptions: Sentences that precede the assumptions made here.
+
+    Returns:
+        The room: mesh, planes, materials, floor, seats and landmarks.
 
     Raises:
-        InputError: the depth of a photo shows no surfaces.
+        InputError: If the depth of a photo shows no surfaces.
     """
-    # 1. Geometry, gravity, places where one can stand and sit, materials of each photo, brought onto the earlier ones.
+    # 1. Geometry, gravity, free floor, seats and materials of each photo, registered to the earlier ones.
     is_whole, photos = bool(others), [photo, *(one.photo for one in others)]
     if is_whole:
         gravities, given = common_gravity([room_gravity(make_grid(one)) for one in photos], others)
@@ -96,7 +99,7 @@ def reconstruct(photo: RgbdPhoto, others: Sequence[PosedPhoto] = (), *, assumpti
 
 
 def _joined(masks: Sequence[GridBool | None], is_whole: bool) -> np.ndarray:
-    """The masks of all photos in one row, (1, cell), as `joined_grid` has their cells; one photo's as it is."""
+    """Masks of all photos in one row, (1, cell), in the order of `joined_grid`; that of a single photo unchanged."""
     own = [mask for mask in masks if mask is not None]
     return np.concatenate([mask.ravel() for mask in own])[None] if is_whole else own[0]
 
@@ -114,7 +117,14 @@ def _landmarks(one: SingleView) -> tuple[Landmark, ...]:
 def floor_plane(grid: AlignedGrid, is_floor: GridBool, material: str, *, is_whole: bool = False) -> Plane:
     """The floor as a rectangle from below the radar to behind the farthest point.
 
-    `is_whole`: the grid shows what is behind the radar, too, and the floor reaches there.
+    Args:
+        grid: Depth grid in the radar's frame.
+        is_floor: Cells of the floor, (row, column).
+        material: Material of the floor.
+        is_whole: Whether the grid also covers what is behind the radar; the floor then extends there.
+
+    Returns:
+        The rectangle, at least 3 x 3 m plus a margin of 0.3 m.
     """
     points = grid.points_m[np.isfinite(grid.depth_m)]
     visible_floor = grid.points_m[is_floor]
@@ -137,13 +147,13 @@ def floor_plane(grid: AlignedGrid, is_floor: GridBool, material: str, *, is_whol
 
 
 def _extent(parts: Sequence[Float[Array, " _"]]) -> tuple[float, float]:
-    """The least 2nd and the greatest 98th percentile of several sets of coordinates, metres."""
+    """The minimum of the 2nd and the maximum of the 98th percentiles of several sets of coordinates, metres."""
     ends = [np.percentile(part, [2, 98]) for part in parts if len(part)]
     return float(min(end[0] for end in ends)), float(max(end[1] for end in ends))
 
 
 def _general_assumptions(floor: Plane, *, has_classes: bool) -> tuple[str, ...]:
-    """What is assumed of every room, as sentences."""
+    """Assumptions made for every room, as sentences."""
     width, length = 2 * floor.half_size_m[0], 2 * floor.half_size_m[1]
     sentences = (
         "The radar stands level at the camera and points where the camera points.",
@@ -155,7 +165,7 @@ def _general_assumptions(floor: Plane, *, has_classes: bool) -> tuple[str, ...]:
 
 
 def _note(given: Sequence[LevelPose], placed: Sequence[LevelPose], others: Sequence[PosedPhoto]) -> str:
-    """A sentence that says how many photos were joined and how far walls moved them."""
+    """A sentence with the number of photos that were fused and how far the walls moved them."""
     pairs = list(zip(given, placed, strict=True))
     shifts_m = [float(np.linalg.norm(b.position_m - a.position_m)) for a, b in pairs]
     turns_deg = [abs(np.degrees(np.angle(np.exp(1j * (b.azimuth_rad - a.azimuth_rad))))) for a, b in pairs]

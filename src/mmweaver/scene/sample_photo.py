@@ -9,5 +9,5 @@ SAMPLE_FOLDER = Path(__file__).resolve().parents[1] / "sample"
 
 
 def sample_photo() -> tuple[RgbdPhoto, tuple[str, ...]]:
-    """The sample room's photo, and the assumptions of `read_photo`."""
+    """Reads the photo of the bundled sample room, with the assumptions of `read_photo`."""
     return read_photo(SAMPLE_FOLDER / "rgb.webp", SAMPLE_FOLDER / "depth.png", SAMPLE_FOLDER / "camera.json")

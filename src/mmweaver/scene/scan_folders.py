@@ -1,8 +1,8 @@
-"""One photo with depth of a scan, or several joined by its poses: a record of each app's or data set's folders.
+"""One photo with depth of a scan, or several joined by its poses, from the folders of apps and data sets.
 
-The depth of phones is coarse; colours are resampled to it as `read_photo` does, and depth of the lowest confidence is
-left out. Phones store pictures as the sensor lies; the recorded pose says which side is up, and the photo is rotated
-upright. Facts of the formats: table in docs/photos.md.
+The depth of phones is coarse; colours are resampled to it as in `read_photo`, and depth of the lowest confidence is
+dropped. Phones store pictures in the sensor's orientation; the recorded pose tells which side is up, and the photo is
+rotated upright. Facts of the formats: table in docs/photos.md.
 """
 
 from collections.abc import Callable, Sequence
@@ -27,8 +27,8 @@ from mmweaver.scene.photo.video_frame import read_video_frame
 from mmweaver.scene.read_photo import to_common_size
 
 MILLIMETRE, TUM_UNIT_M = 0.001, 0.0002
-MAX_DOUBTFUL = 0.7  # share of the depth: where more is of the lowest confidence there is nothing better
-TUM_APART_S, TUM_POSE_APART_S = 0.03, 0.05  # colour and depth, or pose, farther apart are of other moments
+MAX_DOUBTFUL = 0.7  # share of the depth; if more has the lowest confidence, all of it is kept
+TUM_APART_S, TUM_POSE_APART_S = 0.03, 0.05  # maximum time between colour and depth, or pose
 # fx, fy, cx, cy of 640 x 480 (Sturm et al., IROS 2012, and the data set's page); by default those of ROS
 TUM_CAMERAS = {
     "freiburg1": (517.3, 516.5, 318.6, 255.3),
@@ -37,13 +37,13 @@ TUM_CAMERAS = {
     "": (525.0, 525.0, 319.5, 239.5),
 }
 Y_UP_CAMERA = np.diag([1.0, -1.0, -1.0, 1.0])  # from x right, y down, z forward to ARKit's x right, y up, z backward
-DEGREES_A_METRE = 30.0  # how far a camera turns to show as much that is new as a metre further on
-ENOUGH = 1.0  # metres, or so turned: nearer frames show little that is new
+DEGREES_A_METRE = 30.0  # rotation that reveals as much of the room as a metre of translation
+ENOUGH = 1.0  # metres, or the equivalent rotation: nearer frames are redundant
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Frame:
-    """What a folder says of one frame, pictures as they are stored."""
+    """One frame of a scan, pictures in their stored orientation."""
 
     rgb: RgbPixels
     depth_m: DepthPixels
@@ -55,14 +55,14 @@ class _Frame:
 
 @dataclass(frozen=True, kw_only=True)
 class _Format:
-    """A kind of folder.
+    """A kind of scan folder.
 
     Args:
-        markers: files and folders by which it is known.
-        pictures: patterns of the pictures by whose names, numbers, frames are known; the first that is there counts.
-        read: reads the frame of a picture of the folder.
-        pose: that frame's pose as stored, camera (x right, y down, z forward) to world; None where the scan says none.
-        up: axis of the world that points upwards; None where pictures are stored upright.
+        markers: Files and folders that identify the format.
+        pictures: Glob patterns of the pictures whose stems number the frames; the first pattern with matches counts.
+        read: Reads the frame of a picture of the folder.
+        pose: Pose of that frame as stored, camera (x right, y down, z forward) to world; None if the scan has none.
+        up: Axis of the world that points up; None if pictures are stored upright.
     """
 
     markers: tuple[str, ...]
@@ -73,7 +73,13 @@ class _Format:
 
 
 def scan_kind(folder: Path) -> str | None:
-    """The name of the app or data set whose folder this is; None for others.
+    """Recognizes the app or data set that wrote a folder.
+
+    Args:
+        folder: Any path.
+
+    Returns:
+        Name of the format, a key of FORMATS; None if unknown.
 
     >>> scan_kind(Path("no_such_folder")) is None
     True
@@ -83,12 +89,28 @@ def scan_kind(folder: Path) -> str | None:
 
 
 def scan_pose(folder: Path, kind: str, frame: Path) -> Pose | None:
-    """The pose of the frame of a picture as stored, camera to world; None where the scan does not say it."""
+    """The pose of a frame in its stored orientation.
+
+    Args:
+        folder: Folder of the scan.
+        kind: Format, a key of FORMATS.
+        frame: Picture that numbers the frame.
+
+    Returns:
+        Transform (4, 4) from camera (x right, y down, z forward) to world, metres; None if the scan has none.
+    """
     return FORMATS[kind].pose(folder, frame)
 
 
 def refuse_unread(place: Path) -> None:
-    """Raises InputError, with the way on, for what apps write that is not read as it is."""
+    """Rejects formats of scanning apps that need conversion first.
+
+    Args:
+        place: Path given by the user.
+
+    Raises:
+        InputError: If the format is not supported, with the conversion to use.
+    """
     name = place.name
     if place.suffix.lower() == ".r3d":
         raise InputError(f"{place} is Record3D's archive; unpack it (unzip {name} -d scan) and give the folder")
@@ -101,15 +123,18 @@ def refuse_unread(place: Path) -> None:
 
 
 def read_scan_photo(folder: Path, index: int = 0, further: Sequence[int] | str = ()) -> CapturedPhoto:
-    """Photo `index` of a scan, in the order of its frames, and further ones that show more of the room.
+    """Reads one photo of a scan, and further ones that show more of the room.
 
     Args:
-        folder: of the scan.
-        index: of the photo.
-        further: numbers of further ones, or "auto" for up to five whose cameras stand and look differently.
+        folder: Folder of the scan.
+        index: Number of the photo in the order of the frames, from 0.
+        further: Numbers of further photos, or "auto" for up to five with the most different camera poses.
+
+    Returns:
+        The upright photo, the further ones posed relative to it, and the assumptions made.
 
     Raises:
-        InputError: the folder is of no known kind, has no such photo or no poses, or a file is missing or damaged.
+        InputError: If the folder is of no known format, has no such photo or no poses, or a file is missing or damaged.
     """
     kind = scan_kind(folder)
     if kind is None:
@@ -136,7 +161,7 @@ def read_scan_photo(folder: Path, index: int = 0, further: Sequence[int] | str =
 def _upright_photo(
     folder: Path, kind: str, pictures: Sequence[Path], index: int
 ) -> tuple[RgbdPhoto, dict[str, Path], tuple[str, ...], int]:
-    """The photo turned upright, its files, what was assumed, and by how many quarters it was turned."""
+    """The photo rotated upright, its files, the assumptions, and the number of quarter turns."""
     if not 0 <= index < len(pictures):
         raise InputError(f"{folder} holds {len(pictures)} pictures; there is no photo {index}")
     frame = FORMATS[kind].read(folder, pictures[index])
@@ -146,7 +171,7 @@ def _upright_photo(
         pose = scan_pose(folder, kind, pictures[index])
         if pose is None:
             notes = ("The scan says no pose of this photo: it was taken as upright.", *notes)
-        else:  # quarters counterclockwise, by how far up points to the right and to the top of the picture
+        else:  # quarter turns counterclockwise, from the world's up in picture coordinates
             turns = int(np.rint(np.arctan2(pose[up, 0], -pose[up, 1]) / (np.pi / 2))) % 4
     camera = _camera(frame)
     for _ in range((4 - turns) % 4):
@@ -158,10 +183,12 @@ def _upright_photo(
 
 
 def _upright_pose(folder: Path, kind: str, picture: Path, turns: int) -> Pose:
-    """From the upright picture's camera to the world. Raises InputError where the scan does not say it."""
+    """Transform from the upright picture's camera to the world. Raises InputError if the scan has no pose."""
     pose = scan_pose(folder, kind, picture)
     if pose is None:
-        raise InputError(f"{folder}: the scan says no pose for {picture.name}; photos are joined by their poses")
+        raise InputError(
+            f"{folder}: photo {picture.name} has no pose, by which photos are joined; choose another with --photo"
+        )
     quarter = np.array([[0.0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])  # counterclockwise
     return pose @ np.linalg.matrix_power(quarter, turns).T
 
@@ -189,14 +216,21 @@ def _drop_doubtful(frame: _Frame) -> tuple[DepthPixels, tuple[str, ...]]:
 
 
 def spread_out(poses: Sequence[Pose | None], first: int, most: int = 5) -> list[int]:
-    """The frames whose cameras stand and look most differently from the first and each other."""
+    """Chooses frames by farthest-point sampling of camera position and viewing direction.
+
+    Args:
+        poses: Transforms (4, 4) from camera to world, metres; None where a frame has none.
+        first: Frame to start from; it must have a pose.
+        most: Maximum number of frames to add.
+
+    Returns:
+        Indices of the added frames; fewer than `most` if the remaining ones are too close.
+    """
     places = {
         index: np.concatenate([pose[:3, 3], pose[:3, 2] * 57.3 / DEGREES_A_METRE])  # metres, and direction as metres
         for index, pose in enumerate(poses)
         if pose is not None
     }
-    if first not in places:
-        raise InputError(f"photo {first} of the scan has no pose; choose another with --photo")
     chosen = [first]
     while len(chosen) <= most:
         new = {
@@ -211,7 +245,7 @@ def spread_out(poses: Sequence[Pose | None], first: int, most: int = 5) -> list[
 
 # Pieces of several formats ------------------------------------------------------------------------------------------
 def _table(path: Path) -> np.ndarray:
-    """Rows of numbers between commas or spaces; a line of words at the top and comments (#) are left out."""
+    """Rows of numbers separated by commas or spaces; a header line and comments (#) are skipped."""
     lines = [line.replace(",", " ").split() for line in read_text(path).splitlines() if not line.startswith("#")]
     rows = [line for line in lines if line]
     with foreign_errors(path, "no table of numbers ({reason}); export the scan again"):
@@ -222,7 +256,7 @@ def _table(path: Path) -> np.ndarray:
 
 
 def _nearest_pose(path: Path, key: float, column: int, values: slice, apart: float) -> Pose | None:
-    """The row of a table of poses (place, quaternion x y z w) nearest to a key."""
+    """The pose (position, quaternion x y z w) of a table whose key is nearest, within `apart`."""
     rows = _table(path) if path.is_file() else np.zeros((0, 0))
     if rows.shape[1] < values.stop or not len(rows):
         return None
@@ -231,7 +265,7 @@ def _nearest_pose(path: Path, key: float, column: int, values: slice, apart: flo
 
 
 def _quaternion_pose(values: Any, own_axes: np.ndarray | None = None) -> Pose | None:
-    """From place and quaternion (x, y, z, w); None where they are no pose."""
+    """Pose from position and quaternion (x, y, z, w); None if they are not a valid pose."""
     from scipy.spatial.transform import Rotation
 
     try:
@@ -246,7 +280,7 @@ def _quaternion_pose(values: Any, own_axes: np.ndarray | None = None) -> Pose | 
 
 
 def _matrix(pose: np.ndarray) -> Pose | None:
-    """A pose; None for what is none (ScanNet writes -inf where tracking was lost)."""
+    """Validated pose; None if invalid (ScanNet writes -inf where tracking was lost)."""
     if pose.shape != (4, 4) or not np.isfinite(pose).all():
         return None
     is_rotation = np.abs(pose[:3, :3] @ pose[:3, :3].T - np.eye(3)).max() < 1e-2
@@ -286,7 +320,7 @@ def _record3d(folder: Path, colour: Path) -> _Frame:
     """An unpacked .r3d: metadata (JSON: w, h, dw, dh, K by columns, perFrameIntrinsicCoeffs, poses), rgbd/0.jpg,
     rgbd/0.depth (float32 metres, LZFSE), rgbd/0.conf (0, 1, 2; LZFSE).
 
-    Pictures are stored upright in portrait; of a phone held across they lie on their side.
+    Pictures are stored upright for portrait; those of a phone held in landscape are rotated.
     """
     depth, doubt = colour.with_suffix(".depth"), colour.with_suffix(".conf")
     said, rgb = read_json(folder / "metadata"), read_rgb(colour)[0]
@@ -371,7 +405,7 @@ def _scannet_pose(folder: Path, colour: Path) -> Pose | None:
 
 
 def _tum(folder: Path, colour: Path) -> _Frame:
-    """rgb/ and depth/ of PNGs named by their time in seconds, depth in 0.2 mm."""
+    """rgb/ and depth/ with PNGs named by their time in seconds, depth in 0.2 mm."""
     time_s = float(colour.stem)
     depths = [one for one in (folder / "depth").glob("*.png") if one.stem.replace(".", "", 1).isdigit()]
     depth = min(depths, key=lambda one: abs(float(one.stem) - time_s), default=None)

@@ -1,4 +1,4 @@
-"""What one photo shows of a room, in the level frame of its own camera: geometry, places and materials."""
+"""The room as one photo shows it, in the level frame of its own camera: geometry, places and materials."""
 
 from dataclasses import dataclass, replace
 
@@ -27,7 +27,20 @@ from mmweaver.scene.photo.depth_grid import DepthGrid, GridBool, GridInt, make_g
 
 @dataclass(frozen=True, kw_only=True)
 class SingleView:
-    """A photo aligned with gravity, its surfaces with their materials, and the places for people that it shows."""
+    """The room as one photo shows it, in the level frame of its camera.
+
+    Attributes:
+        view: The photo aligned with gravity.
+        grid: Its depth grid in the camera frame.
+        room: The aligned grid with its planar surfaces.
+        is_floor: Cells of the floor, (row, column).
+        height_map: The room from above.
+        free_space: Floor on which a body may stand.
+        seats: Seats, the best first.
+        material: Index into MATERIAL_NAMES of each cell, (row, column).
+        planes: Planes of `room.surfaces` with their materials.
+        assumptions: Sentences on what was assumed.
+    """
 
     view: AlignedPhoto
     grid: DepthGrid
@@ -36,37 +49,45 @@ class SingleView:
     height_map: HeightMap
     free_space: FreeSpace
     seats: tuple[Seat, ...]
-    material: GridInt  # index into MATERIAL_NAMES
-    planes: tuple[Plane, ...]  # of room.surfaces
+    material: GridInt
+    planes: tuple[Plane, ...]
     assumptions: tuple[str, ...]
 
     @property
     def floor_material(self) -> str | None:
-        """The name of the floor's material; None where no floor is seen."""
+        """The name of the floor's material; None if no floor is visible."""
         return MATERIAL_NAMES[self.material[self.is_floor][0]] if self.is_floor.any() else None
 
     @property
     def smooth_planes(self) -> list[Plane]:
-        """The planes that are not mostly of something rough, such as curtains."""
+        """Planes that return specular echoes: not mostly of a rough class, such as curtains."""
         is_rough = cells_of(self.grid, self.view.photo, ROUGH)
         pairs = zip(self.planes, self.room.surfaces, strict=True)
         return [plane for plane, surface in pairs if not _is_mostly(surface, is_rough)]
 
     @property
     def is_wall(self) -> GridBool | None:
-        """The cells that a class mask labels as wall; None without a mask."""
+        """Cells that a class mask labels as wall; None without a mask."""
         return cells_of(self.grid, self.view.photo, WALLS)
 
     def mesh(self) -> tuple[Vertices, Faces, PerFace]:
-        """What was seen as triangles, the floor excepted: metres, indices, material of each face."""
+        """Triangulates the visible surfaces except the floor: vertices in metres, faces, material index per face."""
         rays = viewing_rays(self.grid.intrinsics) @ self.room.radar_from_camera.T
         return make_mesh(self.room.grid, rays, self.room.surfaces, self.is_floor, self.material)
 
 
 def see(photo: RgbdPhoto, gravity: Gravity | None = None) -> SingleView:
-    """Finds surfaces, places and materials in a photo; `gravity` where it is known better than this photo shows.
+    """Finds surfaces, places and materials in a photo.
 
-    Raises InputError where the depth shows no surfaces.
+    Args:
+        photo: Photo with depth and, optionally, classes.
+        gravity: Gravity if it is known better than from this photo alone, in the camera frame.
+
+    Returns:
+        The room in the level frame of this camera.
+
+    Raises:
+        InputError: If the depth shows no surfaces.
     """
     photo, pane_assumptions = fill_panes(photo)
     grid = make_grid(photo)

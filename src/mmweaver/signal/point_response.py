@@ -106,19 +106,16 @@ class PointResponse:
             parts=_tensor(parts_m[:, :, [0, 2]] / config.wavelength_m),
         )
 
-    def phasor(self, axes: Axes) -> Tensor:
-        """Phase of the cube relative to centred, compensated phase, exp(-j pi (r + 2 m d) - j 2 pi d s).
+    def phasor(self, axes: Axes, *, is_grid: bool = True) -> Tensor:
+        """exp(-j pi (r + 2 m d) - j 2 pi d s) (range, doppler, antenna): centred, compensated phase -> the cube's.
 
-        m is the middle of the Doppler window relative to the length of the frame.
-
-        Args:
-            axes: Cells to render.
-
-        Returns:
-            Phasors (range, doppler, antenna), complex64.
+        m is the middle of the Doppler window in lengths of the frame. If not `is_grid`, (cell,) as in `cells`.
         """
         late = self._doppler_middle + axes.delay.double()  # (antenna,)
-        turns = -0.5 * axes.range_bin[:, None, None].double() - axes.doppler_bin[None, :, None].double() * late
+        range_bin, doppler_bin = axes.range_bin.double(), axes.doppler_bin.double()
+        if is_grid:
+            range_bin, doppler_bin = range_bin[:, None, None], doppler_bin[:, None]
+        turns = -0.5 * range_bin - doppler_bin * late
         angle = 2 * math.pi * (turns - turns.round())
         return torch.polar(torch.ones_like(angle), angle).to(torch.complex64)
 
@@ -161,6 +158,15 @@ class PointResponse:
         for left, right in ((at_range, plain), (range_slope, sloped)):
             flat = _add_product(flat, left.transpose(-1, -2), right.flatten(-2))
         return torch.view_as_complex(flat.reshape(shape))
+
+    def cells(self, points: Points, axes: Axes) -> Tensor:
+        """Sum of the points at cells (..., cell), where the axes give one range, Doppler and antenna per cell."""
+        at_range, range_slope, at_doppler, doppler_slope, steer = self.factors(points, axes)
+        along = self.num_loops / (2 * math.pi) * self.migration * points.doppler_bin[..., None]
+        nearer = points.direction @ axes.place.T * (self.config.wavelength_m / (2 * self.range_a_bin_m))
+        real = at_range * at_doppler + nearer * range_slope * at_doppler
+        echo = points.amplitude[..., None] * steer * torch.complex(real, -along * range_slope * doppler_slope)
+        return echo.sum(dim=-2)
 
     def _curvature(self, points: Points, axes: Axes) -> Tensor:
         """Near-field phase in cycles (..., point, antenna) relative to a plane wave: (|x|^2 - (u.x)^2) / (2 R)."""

@@ -1,1 +1,1 @@
-"""Fitting what is learned."""
+"""Training of all networks."""

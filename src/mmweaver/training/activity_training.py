@@ -1,4 +1,4 @@
-"""Training the activity network: recipe `activity`."""
+"""Training of the activity network: recipe `activity`."""
 
 import hashlib
 from collections.abc import Callable, Iterable
@@ -25,7 +25,7 @@ from mmweaver.training.trained_weights import write_recipe_weights
 from mmweaver.training.trainer import BatchSampler, Learner, Listener, LoopRecipe, Trainer
 from mmweaver.training.validation_sheet import draw_confusion
 
-GAIN_SPREAD_DB, SHIFT_BINS, SHIFT_FRAMES = 2.0, 6, 3  # strength of the augmentation
+GAIN_SPREAD_DB, SHIFT_BINS, SHIFT_FRAMES = 2.0, 6, 3  # augmentation: standard deviation, maximum shifts
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,7 +45,16 @@ class ActivityExamples:
 
 
 def compute_log_maps(cubes: Iterable[RadarCube], config: RadarConfig) -> tuple[Tensor, Tensor]:
-    """Log maps of cubes in sqrt(mW), in half precision: range-Doppler and range-angle, (sequence, frame, ...)."""
+    """Computes the log maps of cubes.
+
+    Args:
+        cubes: Cubes in sqrt(mW), all of one shape.
+        config: The radar.
+
+    Returns:
+        Range-Doppler (sequence, frame, 1, range, doppler) and range-angle (sequence, frame, 2, range, azimuth) maps in
+        half precision.
+    """
     maps, doppler, angle = LogMaps(config), [], []
     with torch.no_grad():
         for cube in cubes:
@@ -64,10 +73,21 @@ def activity_examples(
     device: str = "cpu",
     pick: Callable[[np.ndarray], np.ndarray] | None = None,
 ) -> ActivityExamples:
-    """The sequences of a data set in the given splits, optionally selected by `pick` from their labels.
+    """Loads the sequences of a data set in given splits as log maps.
 
-    Their maps are read from the file `cache` if it has the same sequences, else computed and, with `keep`, saved there;
-    signals that are not stored are synthesised on `device`. Raises InputError where there are no sequences.
+    Args:
+        folder: The data set.
+        splits: Names of the splits.
+        cache: File with the maps, used if it has the same sequences. Default: none.
+        keep: Whether computed maps are saved in `cache`. Default: True.
+        device: Device on which signals that are not stored are synthesised. Default: CPU.
+        pick: Selects sequences by their labels and returns indices. Default: all.
+
+    Returns:
+        The sequences.
+
+    Raises:
+        InputError: If there are none.
     """
     data = read_labelled(folder, device=device)
     columns, config = data.columns, data.config
@@ -95,14 +115,14 @@ def activity_examples(
 
 
 def _more(data: LabelledData) -> str:
-    """How to make sequences of every split."""
+    """Advice on how to get sequences of every split."""
     if isinstance(data, ActivitySet):
         return "each split needs people of its own: make the set with three --subjects or more, or another --split"
     return "make more with: mmweaver dataset"
 
 
 def _stored_maps(file: Path | None, mark: str) -> tuple[Tensor, Tensor] | None:
-    """The maps of a file, None where they are of other sequences, damaged or not there."""
+    """Maps from a file; None if it is missing, damaged or of other sequences."""
     try:
         tensors, header = read_tensors(file) if file is not None else ({}, {})
     except InputError:
@@ -111,7 +131,16 @@ def _stored_maps(file: Path | None, mark: str) -> tuple[Tensor, Tensor] | None:
 
 
 def augmented(doppler: Tensor, angle: Tensor, rng: np.random.Generator) -> tuple[Tensor, Tensor]:
-    """Augments maps (sequence, frame, channel, range, other) by random gain and cyclic shifts in time and range."""
+    """Augments maps by random gain and cyclic shifts in time and range.
+
+    Args:
+        doppler: Range-Doppler maps, (sequence, frame, 1, range, doppler).
+        angle: Range-angle maps, (sequence, frame, 2, range, azimuth).
+        rng: Random generator.
+
+    Returns:
+        Augmented maps, float32.
+    """
     gain = torch.from_numpy(rng.normal(0, GAIN_SPREAD_DB / SPREAD_DB, (len(doppler), 1, 1, 1, 1)).astype(np.float32))
     doppler, angle = doppler.float() + gain, angle.float() + gain
     for one, other in zip(doppler, angle, strict=True):
@@ -121,7 +150,7 @@ def augmented(doppler: Tensor, angle: Tensor, rng: np.random.Generator) -> tuple
     return doppler, angle
 
 
-# The recogniser learns all twelve activities, those held out from the learned method included.
+# The recogniser learns all twelve activities, including those held out from the learned method.
 TRAIN_SPLITS = ("train", "test_activity")
 TRAIN_MAPS, VALIDATION_MAPS = "train_maps.safetensors", "validation_maps.safetensors"
 SMOOTHING = 0.1
@@ -139,12 +168,12 @@ class ActivityRecipe(LoopRecipe):
     warm_up_steps: int = 50
     weight_decay: float = 1e-2
     validate_every: int = 100
-    validation_batches: int = 8  # all sequences of the split, distributed
+    validation_batches: int = 8  # together they contain all sequences of the split
 
 
 @dataclass(frozen=True, kw_only=True)
 class ActivityBatch:
-    """Log maps of sequences, and their labels."""
+    """Log maps of sequences and their labels."""
 
     doppler: Tensor  # (sequence, frame, 1, range, doppler)
     angle: Tensor  # (sequence, frame, 2, range, azimuth)
@@ -152,22 +181,25 @@ class ActivityBatch:
 
 
 class ActivityLearner(Learner):
-    """The network with its loss; its picture is the confusion matrix on `unseen`."""
+    """The activity network with its loss; its picture is the confusion matrix on `unseen`."""
 
     def __init__(self, network: ActivityNetwork, unseen: ActivityExamples | None = None):
         super().__init__()
         self.network, self.unseen = network, unseen
 
     def terms(self, batch: ActivityBatch) -> dict[str, Tensor]:
+        """Cross entropy, with label smoothing during training."""
         scores = self.network(batch.doppler, batch.angle)
         smoothing = SMOOTHING if self.training else 0.0
         return {"cross_entropy": torch.nn.functional.cross_entropy(scores, batch.label, label_smoothing=smoothing)}
 
     def figures(self, batch: ActivityBatch) -> dict[str, Tensor]:
+        """Share of wrong predictions."""
         answers = self.network(batch.doppler, batch.angle).argmax(dim=1)
         return {"wrong": (answers != batch.label).float().mean()}
 
     def picture(self) -> np.ndarray | None:
+        """Confusion matrix on `unseen`, or None."""
         if self.unseen is None:
             return None
         answers = scores_of(self.network, self.unseen).argmax(dim=1).numpy()
@@ -186,9 +218,23 @@ def train_activity(
 ) -> Trainer[ActivityLearner]:
     """Trains on a data set of rooms or a labelled set, or resumes from `out`/checkpoint.pt.
 
-    The returned Trainer holds the best network.
-    `start`: weights to fine-tune. `options` go to `Trainer`. The log maps of all sequences are cached in `out`, for
-    those of signals that are not stored cost more than the training. Raises InputError for a folder without data.
+    Log maps of all sequences are cached in `out`: if signals are synthesised, computing them costs more than the
+    training.
+
+    Args:
+        data: Folder of the set.
+        out: Folder of the run.
+        recipe: Hyperparameters.
+        start: Weights to fine-tune. Default: random.
+        listener: Called with the progress of each step. Default: none.
+        compute: Device, precision and process. Default: CPU in float32.
+        **options: Further arguments of `Trainer`.
+
+    Returns:
+        The trainer with the best network on split `validation`.
+
+    Raises:
+        InputError: If the folder contains no data, or training diverges.
     """
     place = compute or ComputeDevice()
     cache: dict[str, Any] = {"keep": place.is_first, "device": str(place.device)}
@@ -204,8 +250,7 @@ def train_activity(
         out,
         compute=compute,
         is_tuning=start is not None,
-        train=_batch_sampler(examples, recipe),
-        validation=_fixed_batches(unseen, recipe.validation_batches),
+        batches=(_batch_sampler(examples, recipe), _fixed_batches(unseen, recipe.validation_batches)),
         **options,
     )
     trainer.run(listener)
@@ -227,7 +272,7 @@ def _batch_sampler(examples: ActivityExamples, recipe: ActivityRecipe) -> BatchS
 
 
 def _fixed_batches(examples: ActivityExamples, count: int) -> Callable[[int, Share], ActivityBatch]:
-    """All sequences, unaugmented, distributed over `count` batches."""
+    """All sequences without augmentation, distributed over `count` batches."""
 
     def draw(index: int, share: Share) -> ActivityBatch:
         own = slice(index % len(examples), None, count)
@@ -239,7 +284,15 @@ def _fixed_batches(examples: ActivityExamples, count: int) -> Callable[[int, Sha
 
 
 def scores_of(network: ActivityNetwork, examples: ActivityExamples) -> Tensor:
-    """Scores (sequence, label) before the softmax, on the CPU."""
+    """Evaluates a network.
+
+    Args:
+        network: The network.
+        examples: Sequences.
+
+    Returns:
+        Logits, (sequence, label), on the CPU.
+    """
     network.eval()
     device = next(network.parameters()).device
     with torch.no_grad():
@@ -251,7 +304,17 @@ def scores_of(network: ActivityNetwork, examples: ActivityExamples) -> Tensor:
 def write_activity_weights(
     out: Path, data: Path, trainer: Trainer[ActivityLearner], scores: Figures | None = None
 ) -> Path:
-    """Writes weights and page of recipe `activity`; returns the path of the weights. `scores`: of `activity_scores`."""
+    """Writes the weights and model card of recipe `activity`.
+
+    Args:
+        out: Folder of the run.
+        data: Folder of the set.
+        trainer: The finished run.
+        scores: Scores of the model card. Default: those of `activity_scores`.
+
+    Returns:
+        Path of the weights.
+    """
     return write_recipe_weights(
         out,
         data,
@@ -264,7 +327,15 @@ def write_activity_weights(
 
 
 def activity_scores(data: Path, trainer: Trainer[ActivityLearner]) -> Figures:
-    """Accuracy in validation, and on what a labelled set holds out for tests, of the best network and of chance."""
+    """Accuracy of the best network and of chance, in validation and on the test split of a labelled set.
+
+    Args:
+        data: Folder of the set.
+        trainer: The finished run.
+
+    Returns:
+        Scores by method.
+    """
     own = {"accuracy": 1 - trainer.best.figures["wrong"]}
     if is_activity_set(data) and SPLITS[2] in read_labelled(data).columns["split"]:
         unseen = activity_examples(data, (SPLITS[2],))

@@ -1,7 +1,7 @@
-"""Fine-tuning on a user's own few captures.
+"""Fine-tuning on a few recordings of the user.
 
-With joints the whole network is tuned. Without, only the heads that correct the cross section of static surfaces;
-echoes of people stay bit-identical.
+With joints the entire network is tuned; without, only the heads that correct the cross section of static surfaces, so
+that echoes of people stay bit-identical.
 """
 
 import hashlib
@@ -38,13 +38,13 @@ from mmweaver.training.trained_weights import weights_card, write_trained
 from mmweaver.training.trainer import BatchSampler, Listener, Trainer
 
 STATIC_HEADS = ("point", "face")
-STATIC_LEARNING_RATE = 5e-3  # of these two small heads, where no capture has joints
-PLACEHOLDER_M = (0.0, 2.5, -0.5)  # placeholder joints of unknown people, whose echoes are multiplied by zero
+STATIC_LEARNING_RATE = 5e-3  # for these two small heads, if no capture has joints
+PLACEHOLDER_M = (0.0, 2.5, -0.5)  # position of unknown people, whose echoes are multiplied by zero
 
 
 @dataclass(frozen=True, kw_only=True)
 class CaptureRecipe(TrainingRecipe):
-    """Hyperparameters of fine-tuning: few, small steps, for there is little data."""
+    """Hyperparameters of fine-tuning: few, small steps, since there is little data."""
 
     name: str = "weaver, tuned"
     steps: int = 300
@@ -58,7 +58,15 @@ class CaptureRecipe(TrainingRecipe):
 
 
 def recipe_for(captures: Sequence[Capture], **given: Any) -> CaptureRecipe:
-    """The recipe for captures with or without joints; `given` overrides its values."""
+    """Chooses the recipe for captures with or without joints.
+
+    Args:
+        captures: The captures.
+        **given: Hyperparameters that override the recipe's.
+
+    Returns:
+        The recipe.
+    """
     if all(one.pose is None for one in captures):
         given = {"learning_rate": STATIC_LEARNING_RATE} | given
     return CaptureRecipe(**given)
@@ -66,21 +74,30 @@ def recipe_for(captures: Sequence[Capture], **given: Any) -> CaptureRecipe:
 
 @dataclass(frozen=True, kw_only=True)
 class CaptureBatch(NetworkBatch):
-    """A batch of captures; where the person is not `known`, the maps are those of the static room."""
+    """A batch of captures; for people that are not `known`, the maps are those of the static room."""
 
     known: Tensor  # (sequence,) 0 or 1
 
 
 class CaptureLearner(NetworkLearner):
-    """Learns from captures; unknown people have no echo. The noise power (mW per cell) is that of the recordings."""
+    """Learns from captures; unknown people have no echo."""
 
     def __init__(self, network: WeaverNetwork, config: RadarConfig, noise_power: float, *, everything: bool):
+        """Selects the parameters that are trained.
+
+        Args:
+            network: The network.
+            config: The radar.
+            noise_power: Noise power of the recordings in mW per cell.
+            everything: Whether the entire network is tuned, not just the heads of static surfaces.
+        """
         super().__init__(network, config)
         self.radar.noise = noise_power
         for name, parameter in network.named_parameters():
             parameter.requires_grad_(everything or name.split(".")[0] in STATIC_HEADS)
 
     def moving(self, code: Any, batch: NetworkBatch) -> MeanEchoes:
+        """Mean echoes of the people in a batch, zero for unknown people."""
         echoes = super().moving(code, batch)
         if not isinstance(batch, CaptureBatch):
             return echoes
@@ -93,9 +110,9 @@ class TuningResult:
 
     trainer: Trainer[CaptureLearner]
     rooms: list[RecordedRoom]
-    held_out: RecordedRoom | None  # None with a single capture
+    held_out: RecordedRoom | None  # None for a single capture
     loss_before: float  # validation loss of the initial weights
-    gain: float  # sqrt(mW) per count, where the recordings were not calibrated
+    gain: float  # of uncalibrated recordings, in sqrt(mW) per count; otherwise 1
 
 
 def tune(
@@ -113,19 +130,19 @@ def tune(
     Uncalibrated recordings share one gain, at which the initial weights agree with them best.
 
     Args:
-        captures: Of one radar; the last one is held out for validation, unless it is the only one.
+        captures: Captures of one radar; the last one is held out for validation unless it is the only one.
         out: Folder of the run.
-        recipe: Hyperparameters, as `recipe_for` chooses them.
-        start: The weights to begin with.
-        listener: Called with the progress of each step.
-        compute: Device, precision and process.
-        options: Further arguments of `Trainer`.
+        recipe: Hyperparameters, as chosen by `recipe_for`.
+        start: Initial weights.
+        listener: Called with the progress of each step. Default: none.
+        compute: Device, precision and process. Default: CPU in float32.
+        **options: Further arguments of `Trainer`.
 
     Returns:
         The trainer with the best network, the calibrated rooms, and the loss of the initial weights.
 
     Raises:
-        InputError: For captures of different radars.
+        InputError: If radars differ, or training diverges.
     """
     network = initial_network(recipe, start)
     rooms = rooms_of(captures)
@@ -145,8 +162,7 @@ def tune(
         learner,
         recipe,
         out,
-        train=_batch_sampler(used, recipe, recipe.seed, maps),
-        validation=validation,
+        batches=(_batch_sampler(used, recipe, recipe.seed, maps), validation),
         compute=compute,
         is_tuning=True,
         **options,
@@ -157,7 +173,17 @@ def tune(
 
 
 def write_tuned(out: Path, tuned: TuningResult, *, start: dict[str, Tensor], licence_of_start: str = "MIT") -> Path:
-    """Writes `out`/weights.safetensors and its README.md; returns the path of the weights."""
+    """Writes weights.safetensors and its model card README.md.
+
+    Args:
+        out: Folder of the run.
+        tuned: Result of `tune`.
+        start: Initial weights.
+        licence_of_start: Their licence. Default: MIT.
+
+    Returns:
+        Path of the weights.
+    """
     digest = hashlib.sha256("".join(room.sha256 for room in tuned.rooms).encode()).hexdigest()
     trainer, used = tuned.trainer, len(tuned.rooms) - (tuned.held_out is not None)
     card = weights_card(
@@ -182,7 +208,7 @@ def write_tuned(out: Path, tuned: TuningResult, *, start: dict[str, Tensor], lic
 
 
 def _loss_of(trainer: Trainer[CaptureLearner], network: WeaverNetwork) -> float:
-    """The validation loss of another network."""
+    """Validation loss of another network."""
     learner = trainer.learner
     own, learner.network = learner.network, network.to(learner.device)
     loss = trainer.validation_loss()
@@ -191,7 +217,15 @@ def _loss_of(trainer: Trainer[CaptureLearner], network: WeaverNetwork) -> float:
 
 
 def estimate_gain(network: WeaverNetwork, rooms: Sequence[RecordedRoom]) -> float:
-    """Amplitude gain (sqrt(mW) per count) at which recordings and network agree on static clutter, by the median."""
+    """Estimates the amplitude gain at which recordings and network agree on static clutter.
+
+    Args:
+        network: The network.
+        rooms: Uncalibrated recordings.
+
+    Returns:
+        Median gain in sqrt(mW) per count.
+    """
     learner = NetworkLearner(network, rooms[0].config).eval()
     maps = []
     for room in rooms:
@@ -217,7 +251,7 @@ def _batch_sampler(
 
 
 def _mask_unknown_people(batch: NetworkBatch, noise: tuple[float, float, float]) -> CaptureBatch:
-    """Replaces sequences without joints by the static room plus noise."""
+    """Replaces the maps of sequences without joints by the static room plus noise."""
     known = torch.isfinite(batch.joints_m).flatten(1).all(dim=1)
     place = torch.tensor(PLACEHOLDER_M).expand(NUM_JOINTS, 3) + 0.1 * torch.eye(NUM_JOINTS, 3)
     each = known[:, None, None, None]

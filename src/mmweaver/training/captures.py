@@ -1,4 +1,4 @@
-"""A user's own recordings as training examples: radar, a photo of the room, and joints where known.
+"""Recordings of the user as training examples: radar, a photo of the room, and joints if known.
 
 A folder is one of
 
@@ -6,7 +6,8 @@ A folder is one of
     a capture folder of mmwave-capture-std       radar.cfg, dca.pcap
 
 and may contain `pose.npz` (22 joints of one person at any times, in the radar's frame). The photo is rgb.png with
-depth.png or depth.npy and camera.json, in the folder or its parent; or the one named in meta.json; or the RealSense's.
+depth.png or depth.npy and camera.json, in the folder or its parent; else the one named in meta.json; else the
+RealSense's.
 """
 
 import hashlib
@@ -36,7 +37,7 @@ from mmweaver.signal.spectra import noise_power
 
 POSE, META = "pose.npz", "meta.json"
 FRAMES = 20  # per sequence of a longer capture
-LATE_S = 0.25  # tolerance for joints missing at either end
+LATE_S = 0.25  # tolerated time without joints at either end
 SPLIT = "captured"
 
 
@@ -52,29 +53,46 @@ class Capture:
 
 @dataclass(frozen=True, kw_only=True)
 class RecordedRoom(StoredRoom):
-    """A capture split into sequences; unknown joints are nan."""
+    """A capture divided into sequences; unknown joints are nan."""
 
-    values: np.ndarray  # (frame, range, doppler, antenna) in sqrt(mW), or in ADC counts where the scale is unknown
+    values: np.ndarray  # (frame, range, doppler, antenna) in sqrt(mW), or in ADC counts if the scale is unknown
     is_calibrated: bool
     sha256: str
 
     @property
     def has_joints(self) -> bool:
+        """Whether the joints are known."""
         return bool(np.isfinite(self.joints_m).all())
 
     @property
     def noise_power(self) -> float:
-        """Noise power per cell; 0 for a radar of one loop, which cannot estimate it."""
+        """Noise power per cell; 0 for a radar with a single loop, which cannot estimate it."""
         return noise_power(self._cube(self.values)) or 0.0
 
     def cube(self, index: int, frames: np.ndarray | None = None, *, realization: int = 0) -> RadarCube:
-        """A sequence, or some of its frames; a recording has only one realization."""
+        """One sequence or some of its frames.
+
+        Args:
+            index: Index of the sequence.
+            frames: Indices of frames. Default: all.
+            realization: Ignored, since a recording has only one realization.
+
+        Returns:
+            The cube.
+        """
         length = self.joints_m.shape[1]
         values = self.values[index * length : (index + 1) * length]
         return self._cube(values if frames is None else values[frames])
 
     def calibrated(self, gain: float) -> "RecordedRoom":
-        """The room with all amplitudes multiplied by `gain`, in sqrt(mW) per count."""
+        """Applies an amplitude gain.
+
+        Args:
+            gain: Gain in sqrt(mW) per count.
+
+        Returns:
+            The calibrated room.
+        """
         factor = np.float32(gain)
         return replace(self, values=self.values * factor, static=self.static * factor, is_calibrated=True)
 
@@ -85,9 +103,19 @@ class RecordedRoom(StoredRoom):
 def read_capture(
     folder: Path, *, rgb: Path | None = None, depth: Path | None = None, camera: Path | None = None
 ) -> Capture:
-    """Reads one folder; `rgb`, `depth` and `camera` replace its own photo.
+    """Reads one capture folder.
 
-    Raises InputError for a folder without a recording or a photo, or with joints at other times than its frames.
+    Args:
+        folder: The folder.
+        rgb: Photo that replaces its own. Default: its own.
+        depth: Depth of that photo.
+        camera: Intrinsics of that photo.
+
+    Returns:
+        The capture.
+
+    Raises:
+        InputError: If it lacks a recording or a photo, or joints do not cover its frames.
     """
     cube = read_recording(folder).cube
     photo = _own_photo(folder) if rgb is None else read_photo(rgb, depth, camera)[0]
@@ -101,9 +129,18 @@ def read_capture(
 
 
 def rooms_of(captures: Sequence[Capture]) -> list[RecordedRoom]:
-    """The captures as rooms to sample batches from, all split into sequences of one length.
+    """Converts captures to rooms from which batches are sampled, all divided into sequences of equal length.
 
-    Static clutter is the mean over the frames of a capture. Raises InputError for recordings of different radars.
+    Static clutter is the mean over the frames of a capture.
+
+    Args:
+        captures: Captures of one radar.
+
+    Returns:
+        One room per capture.
+
+    Raises:
+        InputError: If radars differ.
     """
     config = captures[0].cube.config
     for one in captures:
@@ -179,7 +216,7 @@ def _photo_in(place: Path) -> RgbdPhoto | None:
 
 
 def _photo_of_meta(meta: Path) -> RgbdPhoto | None:
-    """The photo named in a meta.json of `mmweaver generate`. Raises InputError where it has changed since."""
+    """Photo named in a meta.json of `mmweaver generate`. Raises InputError if it has changed since."""
     try:
         inputs: dict[str, Any] = read_json(meta)["inputs"]
     except (InputError, KeyError, TypeError):

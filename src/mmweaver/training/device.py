@@ -1,4 +1,4 @@
-"""Where training runs: device, precision, and rank among the processes."""
+"""Device, precision and process rank of a training."""
 
 import os
 from contextlib import AbstractContextManager
@@ -23,14 +23,23 @@ class ComputeDevice:
     device: torch.device = CPU
     precision: str = "float32"
     share: Share = (0, 1)
-    accelerator: Any = None  # accelerate's Accelerator, with several processes
+    accelerator: Any = None  # accelerate.Accelerator if there are several processes
 
     @classmethod
     def chosen(cls, device: str = "auto", precision: str = "auto") -> "ComputeDevice":
-        """The requested device and precision.
+        """Selects device and precision.
 
-        "auto" selects a GPU with bf16 if available, else the CPU with float32. Under `torchrun` the processes join,
-        each on its own GPU or all on CPUs. Raises InputError for an unavailable device.
+        Under `torchrun` the processes join, each on its own GPU or all on CPUs.
+
+        Args:
+            device: Torch device; "auto" selects a GPU if available.
+            precision: "float32", "bf16", or "auto" for bf16 on a GPU. Default: "auto".
+
+        Returns:
+            The device of this process.
+
+        Raises:
+            InputError: If the device is unavailable, or the precision unknown.
         """
         if precision not in PRECISIONS:
             raise InputError(f"precision must be one of {', '.join(PRECISIONS)}, not {precision!r}")
@@ -49,11 +58,11 @@ class ComputeDevice:
         return self.share[0] == 0
 
     def joined(self, module: nn.Module) -> nn.Module:
-        """The module wrapped so that gradients are averaged over all processes."""
+        """Wraps a module such that gradients are averaged over all processes."""
         return module if self.accelerator is None else self.accelerator.prepare_model(module)
 
     def mean(self, values: Tensor) -> Tensor:
-        """Mean of a tensor over all processes (same shape), identical in each."""
+        """Averages a tensor over all processes; the result is identical in each."""
         return values if self.accelerator is None else self.accelerator.reduce(values, reduction="mean")
 
     def wait(self) -> None:
@@ -66,12 +75,19 @@ class ComputeDevice:
         return torch.autocast(self.device.type, torch.bfloat16, enabled=self.precision == "bf16")
 
     def moved(self, batch: Any) -> Any:
-        """A batch (tensors in dataclasses, lists, tuples and dicts) on this process's device."""
+        """Moves a batch (tensors in dataclasses, lists, tuples and dicts) to the device of this process."""
         return moved(batch, self.device)
 
 
 def moved(batch: Any, device: torch.device) -> Any:
-    """The batch with all its tensors on a device.
+    """Moves all tensors of a batch to a device.
+
+    Args:
+        batch: Tensors, nested in dataclasses, lists, tuples and dicts.
+        device: The device.
+
+    Returns:
+        The batch; other values are kept.
 
     >>> moved({"a": [torch.zeros(2)], "b": "name"}, torch.device("meta"))["a"][0].device.type
     'meta'

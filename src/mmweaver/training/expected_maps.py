@@ -1,6 +1,6 @@
-"""Expected power maps of stored geometry: training targets without speckle and without fluctuation of the noise.
+"""Expected power maps from stored geometry: training targets without speckle and noise fluctuation.
 
-A simulated signal is one random realization in every cell; the simulator's echoes give its mean directly.
+A simulated signal is one random realization in every cell; the simulator's paths give its mean directly.
 Reference: docs/decisions/loss-on-mean-power.md.
 """
 
@@ -18,12 +18,25 @@ class ExpectedMaps:
     """Mean power maps of one room of a data set with geometry."""
 
     def __init__(self, room: StoredRoom):
+        """Computes the maps of the static room.
+
+        Args:
+            room: Room with geometry.
+        """
         assert room.geometry is not None, "signals are stored, not geometry"
         self.room, self.radar = room, _radar(room)
         self.static = self.radar.maps(static_points(room.geometry.room.paths, self.radar.response))
 
     def frames(self, index: int, frames: np.ndarray) -> tuple[PowerMaps, PowerMaps]:
-        """Maps (frame, range, other) of frames of a sequence: room, person and noise together, and the person alone."""
+        """Computes maps of frames of a sequence.
+
+        Args:
+            index: Index of the sequence.
+            frames: Indices of frames.
+
+        Returns:
+            Power maps (frame, range, other) of room, person and noise together, and of the person only.
+        """
         person = self.room.body_paths(index, frames)
         both = [self._frame(person, number) for number in range(len(frames))]
         return PowerMaps.stack([whole for whole, _ in both]), PowerMaps.stack([alone for _, alone in both])

@@ -1,4 +1,4 @@
-"""Model cards: what a weights file is, its data, its scores, and its limits."""
+"""Model cards: purpose, data, scores and limits of a weights file."""
 
 import json
 from collections.abc import Mapping
@@ -9,7 +9,7 @@ from mmweaver.core.checksums import sha256_of_file
 from mmweaver.models.weights import WeightsCard
 
 Figures = Mapping[str, Mapping[str, float]]  # {method: {column: value}}
-OWN = "this network"  # the method whose figures are those of the weights
+OWN = "this network"  # key of the weights' own scores
 
 FRONT = """---
 license: {licence}
@@ -44,7 +44,7 @@ class Page:
 
     about: str
     limits: str
-    unit: str  # of the figures
+    unit: str  # unit of the scores
 
 
 WEAVER = Page(
@@ -74,8 +74,19 @@ of the paper's perceptual loss.""",
 def model_card(
     card: WeightsCard, file: Path, *, data: str, evaluated_on: str, figures: Figures, page: Page = WEAVER
 ) -> str:
-    """The model card as Markdown with front matter. `data`, `evaluated_on`: sentences; `figures`: rows of scores, in
-    `page.unit`, one of them of OWN."""
+    """Formats a model card as Markdown with front matter.
+
+    Args:
+        card: Header of the weights.
+        file: The weights.
+        data: Sentence on the training data.
+        evaluated_on: Sentence on the evaluation data.
+        figures: Scores in `page.unit` by method, including OWN.
+        page: Text of the recipe. Default: that of the weaver.
+
+    Returns:
+        Text of the card.
+    """
     lines = [
         FRONT.format(
             licence=card.licence.lower(),
@@ -116,7 +127,7 @@ def model_card(
 
 
 def _index(card: WeightsCard, figures: Figures) -> str:
-    """The scores of this network as the Hub reads them, in one line of JSON, which is YAML, too."""
+    """Scores of this network for the Hub, as one line of JSON, which is also YAML."""
     scores = [
         {"type": column, "value": round(value, 4), "name": column.replace("_", " ")}
         for column, value in figures[OWN].items()

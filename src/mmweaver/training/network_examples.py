@@ -1,4 +1,4 @@
-"""Training batches of the learned method, sampled from a data set; a step always gives the same batch."""
+"""Training batches of the learned method, sampled from a data set; equal steps give equal batches."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -36,7 +36,14 @@ _PLANE_X = (6,)  # columns of a plane's features: normal
 
 
 def reflected_scene(scene: SceneTensors) -> SceneTensors:
-    """The scene reflected at the plane x = 0."""
+    """Reflects a scene at the plane x = 0.
+
+    Args:
+        scene: Scene tensors.
+
+    Returns:
+        The reflected scene, including image, camera, points and planes.
+    """
     flip = scene.point_m.new_tensor([-1.0, 1.0, 1.0])
     camera = scene.camera.clone()
     camera[..., 2] = scene.image.shape[-1] - 1 - camera[..., 2]
@@ -56,13 +63,27 @@ def reflected_scene(scene: SceneTensors) -> SceneTensors:
 
 
 def reflected_joints(joints: Tensor) -> Tensor:
-    """Positions or velocities (..., 22, 3) of the reflected person, with left and right joints exchanged."""
+    """Reflects a person at the plane x = 0.
+
+    Args:
+        joints: Positions or velocities, (..., 22, 3).
+
+    Returns:
+        The reflected ones, with left and right joints swapped.
+    """
     order = [JOINT_NAMES.index(_other(name)) for name in JOINT_NAMES]
     return joints[..., order, :] * joints.new_tensor([-1.0, 1.0, 1.0])
 
 
 def reflected_targets(targets: Targets) -> Targets:
-    """Targets with azimuth reversed; range, Doppler and elevation are unchanged."""
+    """Reverses azimuth in the targets; range, Doppler and elevation are unchanged.
+
+    Args:
+        targets: Target maps.
+
+    Returns:
+        The reflected targets.
+    """
     person = None if targets.person is None else _azimuth_flipped(targets.person)
     return Targets(maps=_azimuth_flipped(targets.maps), static=_azimuth_flipped(targets.static), person=person)
 
@@ -84,12 +105,12 @@ def _other(name: str) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class NetworkBatch:
-    """Rooms, whole motions, and power maps of some of their frames."""
+    """Rooms, entire motions, and power maps of some of their frames."""
 
     scene: SceneTensors
     joints_m: Tensor  # (sequence, frame, 22, 3), all frames
     velocity_mps: Tensor  # (sequence, frame, 22, 3)
-    frames: Tensor  # (sequence, sampled) indices of frames
+    frames: Tensor  # (sequence, sampled) frame indices
     targets: Targets
 
 
@@ -102,15 +123,22 @@ class RoomExamples:
 
     @cached_property
     def scene(self) -> SceneTensors:
-        """The room as at inference: reconstructed from its photo."""
+        """The room as at inference, reconstructed from its photo."""
         geometry = self.room.geometry
         reconstructed = reconstruct(self.room.photo)
         return SceneTensors.of(reconstructed, self.room.config, None if geometry is None else geometry.photographed)
 
     def maps(self, index: int, frames: np.ndarray) -> tuple[PowerMaps, PowerMaps | None]:
-        """Maps (frame, range, other) of frames of a sequence, and of the person alone where geometry is stored.
+        """Power maps of frames of a sequence.
 
         Stored signals give the maps of one realization, stored geometry the mean over realizations.
+
+        Args:
+            index: Index of the sequence.
+            frames: Indices of frames.
+
+        Returns:
+            Maps (frame, range, other), and those of the person only if geometry is stored.
         """
         if self._expected is not None:
             return self._expected.frames(index, frames)
@@ -119,7 +147,7 @@ class RoomExamples:
 
     @cached_property
     def static(self) -> PowerMaps:
-        """Maps (range, other) of the room without a person."""
+        """Power maps (range, other) of the room without a person."""
         if self._expected is not None:
             return self._expected.static
         return power_maps(static_cube(self.room.static, self.room.config).values, self.room.config)[0]
@@ -130,7 +158,18 @@ class RoomExamples:
 
 
 def examples(folder: Path, split: str) -> list[RoomExamples]:
-    """The rooms of a data set that have sequences of a split. Raises InputError where there are none."""
+    """Loads the rooms of a data set that have sequences of a split.
+
+    Args:
+        folder: The data set.
+        split: Name of the split.
+
+    Returns:
+        The rooms.
+
+    Raises:
+        InputError: If there are none.
+    """
     device = "cuda" if torch.cuda.is_available() else "cpu"
     rooms = [RoomExamples(room, split) for room in read_rooms(folder, device=device)]
     rooms = [room for room in rooms if room.indices]
@@ -151,9 +190,19 @@ def sample_batch(
     share: Share = (0, 1),
     mirror: bool = False,
 ) -> NetworkBatch:
-    """Samples `size` sequences of different rooms and `frames` frames of each; returns the share of one process.
+    """Samples a batch of sequences from different rooms.
 
-    With `mirror`, every second batch is reflected left-right.
+    Args:
+        rooms: The rooms.
+        seed: Seed of the run.
+        step: Step of the training.
+        size: Number of sequences, over all processes.
+        frames: Number of frames sampled from each sequence.
+        share: Rank and number of processes. Default: a single process.
+        mirror: Whether every second batch, on average, is reflected left-right. Default: False.
+
+    Returns:
+        The part of the batch that belongs to this process.
     """
     rng = stream(seed, "batch", step)
     chosen = rng.choice(len(rooms), size=size, replace=len(rooms) < size)
@@ -200,7 +249,15 @@ def _reflected(batch: NetworkBatch) -> NetworkBatch:
 
 
 def power_maps(values: np.ndarray, config: RadarConfig) -> PowerMaps:
-    """Power maps (frame, range, other) of the values of a cube (frame, range, doppler, antenna)."""
+    """Computes the power maps of a cube.
+
+    Args:
+        values: Cube, (frame, range, doppler, antenna).
+        config: The radar.
+
+    Returns:
+        Power maps (frame, range, other); elevation is empty for arrays without elevation.
+    """
     cube = RadarCube(values=values, grid=CubeGrid.of(config, len(values)), config=config, scale=1.0)
     if has_elevation(config):
         elevation = range_elevation_power(cube, elevation_axis_rad())

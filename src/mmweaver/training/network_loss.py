@@ -1,9 +1,9 @@
-"""Loss of the learned method: on mean power maps, never on phase.
+"""Loss of the learned method, on mean power maps and never on phase.
 
-The power of a radar cell in which several echoes of unknown phase meet is exponentially distributed about its mean.
-The likelihood of that mean is the Itakura-Saito divergence, p/m - log(p/m) - 1: it weighs decibels equally in weak and
-strong cells. But where the network cannot know whether a cell is bright, it estimates the mean of the bright case, and
-the maps glow all over; the absolute difference of logarithms estimates the median instead. Both are used.
+The power of a radar cell with several echoes of unknown phase is exponentially distributed about its mean (speckle).
+The negative log-likelihood of that mean is the Itakura-Saito divergence, p/m - log(p/m) - 1, which weights decibels
+equally in weak and strong cells. But where the network cannot know whether a cell is bright, this estimates the mean of
+the bright case and blurs the maps; the absolute difference of logarithms estimates the median instead. Both are used.
 
 Reference: Fevotte et al. 2009.
 """
@@ -20,50 +20,84 @@ from mmweaver.propagation.radar_equation import points_of
 
 STEEPEST = 8.0
 LIKELIHOOD = 0.2  # weight of the divergence relative to the difference of logarithms
-FLOOR = 1e-5  # of the peak: levels below a 50 dB display have no weight
-OF_PERSON = 2.0  # weight of the maps of the person alone, where the network has most to learn
+FLOOR = 1e-5  # relative to the peak: levels below a 50 dB display have no weight
+OF_PERSON = 2.0  # weight of the maps of the person only, where the network has most to learn
 FLOOR_OF_PERSON = 1e-4  # as FLOOR, relative to the peak of the person
-# Range-Doppler maps are empty except for a seventh; two antenna rows resolve elevation poorly.
+# Six sevenths of a range-Doppler map are empty; two antenna rows resolve elevation poorly.
 WEIGHT = {"range_doppler": 4.0, "range_azimuth": 1.0, "range_elevation": 0.4}
 POOLS = (
     (1, 1),
     (4, 2),
     (8, 8),
-)  # average pooling of the maps, so that small displacements of an echo do not count twice
+)  # average pooling, so that a slightly displaced echo is not counted twice
 
 
 @dataclass(frozen=True, kw_only=True)
 class Targets:
-    """Maps of recorded, simulated or expected power (mW): of some frames, and of the static room."""
+    """Maps of recorded, simulated or expected power in mW, of sampled frames and of the static room."""
 
     maps: PowerMaps  # (sequence, frame, range, other)
     static: PowerMaps  # (sequence, range, other), the room without a person
-    person: PowerMaps | None = None  # as maps, of the person alone, where known
+    person: PowerMaps | None = None  # like `maps`, of the person only, if known
 
 
 def itakura_saito(mean: Tensor, power: Tensor, least: Tensor) -> Tensor:
-    """Mean over cells of p/m - log(p/m) - 1, both raised by `least` (broadcast)."""
+    """Itakura-Saito divergence, averaged over cells.
+
+    Args:
+        mean: Predicted mean power.
+        power: Observed power.
+        least: Floor added to both (broadcast).
+
+    Returns:
+        Scalar.
+    """
     return speckle_divergence((power + least).log() - (mean + least).log()).mean()
 
 
 def speckle_divergence(log_ratio: Tensor) -> Tensor:
-    """p/m - log(p/m) - 1 of each cell, of log(p/m).
+    """p/m - log(p/m) - 1 per cell.
 
     Beyond p = STEEPEST m it continues linearly in decibels, so that a single unpredicted specular lobe does not
     dominate the loss.
+
+    Args:
+        log_ratio: log(p/m).
+
+    Returns:
+        Divergence of the same shape.
     """
     bounded = log_ratio.clamp(max=math.log(STEEPEST))
     return bounded.exp() - bounded - 1 + (STEEPEST - 1) * (log_ratio - bounded)
 
 
 def difference(mean: Tensor, power: Tensor, least: Tensor) -> Tensor:
-    """Mean absolute difference of logarithms plus the weighted divergence, of maps (sequence, ..., range, other)."""
+    """Mean absolute difference of logarithms plus weighted divergence.
+
+    Args:
+        mean: Predicted maps, (sequence, ..., range, other).
+        power: Observed maps.
+        least: Floor added to both (broadcast).
+
+    Returns:
+        Scalar.
+    """
     logs = ((power + least).log() - (mean + least).log()).abs().mean()
     return logs + LIKELIHOOD * itakura_saito(mean, power, least)
 
 
 def weaver_loss(radar: MeanPower, static: MeanEchoes, moving: MeanEchoes, targets: Targets) -> dict[str, Tensor]:
-    """Terms of the loss by name; their sum is what is minimised."""
+    """Computes the loss of the learned method.
+
+    Args:
+        radar: The radar.
+        static: Echoes of the room.
+        moving: Echoes of people in the sampled frames.
+        targets: Target maps.
+
+    Returns:
+        Terms by name, whose sum is minimised.
+    """
     static_maps = radar.maps(points_of(static, radar.response))
     person = radar.maps(points_of(moving, radar.response))
     terms: dict[str, Tensor] = {}

@@ -37,12 +37,12 @@ class TrainingRecipe(LoopRecipe):
     batch_size: int = 3  # sequences, each of a different room
     frames: int = 8  # sampled from each sequence
     mirror: bool = True  # reflect every second batch left-right
-    corrects_surfaces: bool = False  # whether the strength of photographed surfaces is learned, or left to physics
-    encoder: str = DEFAULT_ENCODER  # environment encoder, a name in ENCODERS
+    corrects_surfaces: bool = False  # learn the cross section of photographed surfaces instead of using physics
+    encoder: str = DEFAULT_ENCODER  # environment encoder, a key of ENCODERS
 
 
 class NetworkLearner(Learner):
-    """The network with the radar that turns its echoes into maps; `shown` returns the sequences to plot."""
+    """The network with the radar that converts its echoes to maps."""
 
     def __init__(
         self,
@@ -50,6 +50,13 @@ class NetworkLearner(Learner):
         config: RadarConfig,
         shown: Callable[[], NetworkBatch] | None = None,
     ):
+        """Combines network and radar.
+
+        Args:
+            network: The network.
+            config: The radar.
+            shown: Returns the sequences that are plotted. Default: none.
+        """
         super().__init__()
         self.network = network
         self.radar = MeanPower(config)
@@ -63,9 +70,11 @@ class NetworkLearner(Learner):
 
     @property
     def device(self) -> torch.device:
+        """Device of the network."""
         return next(self.network.parameters()).device
 
     def terms(self, batch: NetworkBatch) -> dict[str, torch.Tensor]:
+        """Terms of `weaver_loss`."""
         code = self.network.encode_room(batch.scene)
         moving = self.moving(code, batch)
         with exactly(batch.joints_m):
@@ -76,7 +85,14 @@ class NetworkLearner(Learner):
         return self.network.moving(code, batch.joints_m, batch.velocity_mps, batch.frames)
 
     def predict(self, batch: NetworkBatch) -> PowerMaps:
-        """Mean power maps (sequence, frame, range, other) of room, person and noise, mW."""
+        """Predicts power maps of room, person and noise.
+
+        Args:
+            batch: The batch.
+
+        Returns:
+            Mean power in mW, (sequence, frame, range, other).
+        """
         code = self.network.encode_room(batch.scene)
         moving = self.moving(code, batch)
         with exactly(batch.joints_m):
@@ -91,6 +107,7 @@ class NetworkLearner(Learner):
         )
 
     def picture(self) -> np.ndarray | None:
+        """Maps of ground truth and network on `shown`, or None."""
         if self.shown is None:
             return None
         batch = moved(self.shown(), self.device)
@@ -113,16 +130,16 @@ def train(
         data: Folder of the data set.
         out: Folder of the run.
         recipe: Hyperparameters.
-        start: Weights to fine-tune; default: random.
-        listener: Called with the progress of each step.
-        compute: Device, precision and process.
-        options: Further arguments of `Trainer`.
+        start: Weights to fine-tune. Default: random.
+        listener: Called with the progress of each step. Default: none.
+        compute: Device, precision and process. Default: CPU in float32.
+        **options: Further arguments of `Trainer`.
 
     Returns:
-        The trainer, with the network that was best on split `validation`.
+        The trainer with the best network on split `validation`.
 
     Raises:
-        InputError: For folders without data, and where gradients stay non-finite.
+        InputError: If the folder contains no data, or training diverges.
     """
     options = {"is_tuning": start is not None} | options
     rooms, unseen = examples(data, "train"), examples(data, "validation")
@@ -133,8 +150,7 @@ def train(
         recipe,
         out,
         compute=compute,
-        train=batch_sampler(rooms, recipe, recipe.seed, recipe.mirror),
-        validation=validation,
+        batches=(batch_sampler(rooms, recipe, recipe.seed, recipe.mirror), validation),
         **options,
     )
     trainer.run(listener)
@@ -142,7 +158,15 @@ def train(
 
 
 def initial_network(recipe: LoopRecipe, start: dict[str, torch.Tensor] | None) -> WeaverNetwork:
-    """The network that training starts from."""
+    """Creates the network from which training starts.
+
+    Args:
+        recipe: Hyperparameters.
+        start: Weights to load; None for random ones.
+
+    Returns:
+        The network.
+    """
     assert isinstance(recipe, TrainingRecipe), "a recipe of this network"
     torch.manual_seed(recipe.seed)
     network = WeaverNetwork(corrects_surfaces=recipe.corrects_surfaces, encoder=recipe.encoder)
@@ -152,7 +176,17 @@ def initial_network(recipe: LoopRecipe, start: dict[str, torch.Tensor] | None) -
 
 
 def batch_sampler(rooms: list[RoomExamples], recipe: TrainingRecipe, seed: int, mirror: bool = False) -> BatchSampler:
-    """Samples batches of rooms by step."""
+    """Creates a sampler of batches by step.
+
+    Args:
+        rooms: The rooms.
+        recipe: Hyperparameters.
+        seed: Seed of the batches.
+        mirror: Whether batches are reflected at random. Default: False.
+
+    Returns:
+        Function of step and share.
+    """
     size, frames = recipe.batch_size, recipe.frames
     return lambda step, share: sample_batch(rooms, seed, step, size=size, frames=frames, share=share, mirror=mirror)
 
@@ -160,7 +194,17 @@ def batch_sampler(rooms: list[RoomExamples], recipe: TrainingRecipe, seed: int, 
 def write_weights(
     out: Path, data: Path, trainer: Trainer[NetworkLearner], *, start: dict[str, torch.Tensor] | None = None
 ) -> Path:
-    """Writes `out`/weights.safetensors and its model card README.md; returns the path of the weights."""
+    """Writes weights.safetensors and its model card README.md.
+
+    Args:
+        out: Folder of the run.
+        data: Folder of the data set.
+        trainer: The finished run.
+        start: Initial weights, as a baseline. Default: random.
+
+    Returns:
+        Path of the weights.
+    """
     plan = read_plan(data)
     about = (
         f"{len(plan['kinds'])} kinds of rooms, {plan['num_layouts']} layouts of each, {plan['sequences_a_room']}"
@@ -180,7 +224,15 @@ def write_weights(
 
 
 def compare_with_start(trainer: Trainer[NetworkLearner], start: ScattererNetwork) -> Figures:
-    """Mean map differences in dB on the validation batches: network, initial weights, and empty maps."""
+    """Evaluates network, initial weights and empty maps on the validation batches.
+
+    Args:
+        trainer: The finished run.
+        start: Network with the initial weights.
+
+    Returns:
+        Mean map differences in dB by method.
+    """
     learner = trainer.learner
     rows: dict[str, list[dict[str, float]]] = {}
     trained = learner.network

@@ -1,4 +1,4 @@
-"""Training the pose network: recipe `pose`."""
+"""Training of the pose network: recipe `pose`."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -25,7 +25,7 @@ MIRRORED = [
 
 @dataclass(frozen=True, kw_only=True)
 class PosedFrames:
-    """A recording as the network reads it, with the joints of the person in the radar's level axes."""
+    """A recording as network input, with the person's joints in the radar's level axes."""
 
     frames: PointFrames
     joints_m: Float[np.ndarray, "frame 22 3"]
@@ -36,7 +36,7 @@ class PosedFrames:
 
 @dataclass(frozen=True, kw_only=True)
 class Disturbance:
-    """How much each window is disturbed: shares of windows, and standard deviations."""
+    """Augmentation of windows: probabilities and standard deviations."""
 
     mirrored: float = 0.5
     backwards: float = 0.3
@@ -45,9 +45,9 @@ class Disturbance:
     point_m: float = 0.01
     strength_db: float = 2.0
     thinned: float = 0.6
-    kept: tuple[float, float] = (0.4, 1.0)  # of points, where thinned
+    kept: tuple[float, float] = (0.4, 1.0)  # share of points kept in thinned windows
     with_gaps: float = 0.3
-    gaps: float = 0.1  # of frames, where there are gaps
+    gaps: float = 0.1  # share of frames lost in windows with gaps
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,14 +62,22 @@ class PoseBatch:
 
 @dataclass(frozen=True, kw_only=True)
 class PoseWindows:
-    """Windows of so many frames, drawn from recordings by their length."""
+    """Windows of equal length, sampled from recordings in proportion to their length."""
 
     recordings: Sequence[PosedFrames]
     window_frames: int
     disturbance: Disturbance | None = field(default_factory=Disturbance)
 
     def batch(self, count: int, rng: np.random.Generator) -> PoseBatch:
-        """`count` windows, each from anywhere."""
+        """Samples windows at random positions.
+
+        Args:
+            count: Number of windows.
+            rng: Random generator.
+
+        Returns:
+            The batch, augmented if `disturbance` is set.
+        """
         usable = [one for one in self.recordings if len(one) >= self.window_frames]
         share = np.array([len(one) for one in usable], float)
         windows = []
@@ -87,7 +95,14 @@ class PoseWindows:
 
 
 def batch_of(windows: Sequence[tuple[PointFrames, Float[np.ndarray, "frame 22 3"]]]) -> PoseBatch:
-    """Windows as tensors; points far from the person are left out."""
+    """Converts windows to tensors; points far from the person are dropped.
+
+    Args:
+        windows: Frames and joints of each window.
+
+    Returns:
+        The batch.
+    """
     middles = [middle_m(frames) for frames, _ in windows]
     kept = [near(frames, middle) for (frames, _), middle in zip(windows, middles, strict=True)]
     return PoseBatch(
@@ -101,7 +116,17 @@ def batch_of(windows: Sequence[tuple[PointFrames, Float[np.ndarray, "frame 22 3"
 def disturbed(
     frames: PointFrames, joints_m: Float[np.ndarray, "frame 22 3"], how: Disturbance, rng: np.random.Generator
 ) -> tuple[PointFrames, Float[np.ndarray, "frame 22 3"]]:
-    """A window as another board might see it, of a person elsewhere, of another hand, or the other way in time."""
+    """Augments a window: mirrored, reversed in time, tilted, shifted, noisy, thinned or with lost frames.
+
+    Args:
+        frames: Points of the window.
+        joints_m: Joints in metres, (frame, 22, 3).
+        how: Strength of the augmentation.
+        rng: Random generator.
+
+    Returns:
+        Augmented points and joints.
+    """
     values, is_there, joints = frames.values.copy(), frames.is_there.copy(), joints_m.copy()
     if rng.random() < how.mirrored:
         values[..., 0] *= -1
@@ -142,13 +167,14 @@ class PoseRecipe(LoopRecipe):
 
 
 class PoseLearner(Learner):
-    """The network with its loss: distances of joints about the pelvis, of the pelvis, and between ends of bones."""
+    """The pose network with its loss: errors of joints relative to the pelvis, of the pelvis, and of bone vectors."""
 
     def __init__(self, network: PoseNetwork):
         super().__init__()
         self.network = network
 
     def terms(self, batch: PoseBatch) -> dict[str, Tensor]:
+        """Mean errors in metres: joints relative to the pelvis, pelvis, and bone vectors."""
         joints, pelvis = self.network(batch.values, batch.is_there, batch.middle_m)
         wanted = batch.joints_m - batch.joints_m[..., :1, :]
         return {
@@ -159,12 +185,12 @@ class PoseLearner(Learner):
 
 
 def _bones(joints: Tensor) -> Tensor:
-    """Vectors from each joint's parent to it (..., 21, 3)."""
+    """Vectors from each joint's parent to the joint, (..., 21, 3)."""
     return joints[..., 1:, :] - joints[..., list(PARENTS[1:]), :]
 
 
 def mean_pose_m(windows: PoseWindows) -> np.ndarray:
-    """The mean of all joints relative to the pelvis (22, 3)."""
+    """Mean joints relative to the pelvis in metres, (22, 3)."""
     joints = np.concatenate([one.joints_m for one in windows.recordings])
     return (joints - joints[:, :1]).mean(axis=0)
 
@@ -179,10 +205,22 @@ def train_pose(
     listener: Listener | None = None,
     **options: Any,
 ) -> Trainer[PoseLearner]:
-    """Trains on windows, or resumes from `out`/checkpoint.pt. The returned Trainer holds the network that is best on
-    the recordings of `unseen`. `start`: weights to fine-tune. `options` go to `Trainer`.
+    """Trains on windows, or resumes from `out`/checkpoint.pt.
 
-    Raises InputError where no recording is as long as a window.
+    Args:
+        windows: Windows of the training recordings.
+        unseen: Windows of the validation recordings.
+        out: Folder of the run.
+        recipe: Hyperparameters.
+        start: Weights to fine-tune. Default: random.
+        listener: Called with the progress of each step. Default: none.
+        **options: Further arguments of `Trainer`.
+
+    Returns:
+        The trainer with the best network on `unseen`.
+
+    Raises:
+        InputError: If no recording is as long as a window, or training diverges.
     """
     for one in (windows, unseen):
         if not any(len(recording) >= one.window_frames for recording in one.recordings):
@@ -198,8 +236,7 @@ def train_pose(
         recipe,
         out,
         is_tuning=start is not None,
-        train=_sampler(windows, recipe, "pose batch"),
-        validation=_sampler(unseen, recipe, "pose validation"),
+        batches=(_sampler(windows, recipe, "pose batch"), _sampler(unseen, recipe, "pose validation")),
         **options,
     )
     trainer.run(listener)

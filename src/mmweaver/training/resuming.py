@@ -1,4 +1,4 @@
-"""Trainings that may be interrupted: state is saved regularly and resumed from there."""
+"""Interruptible training: state is saved regularly, and training resumes from it."""
 
 import io
 import logging
@@ -18,14 +18,24 @@ log = logging.getLogger(__name__)
 
 
 class Resumable:
-    """Counts steps, saves the state of `parts` every minute, and resumes a saved run.
+    """Counts steps, saves the state of a run regularly, and resumes a saved run.
 
-    Without a file nothing is saved. `history` is for rows of figures. `every_s` overrides the interval.
-    Of several processes all load, and only the one that `writes` saves. A run resumes with its original number of
-    threads, for sums over other numbers of threads differ in their last bits.
+    Of several processes all load and one saves. A run resumes with its original number of threads, since sums over
+    another number of threads differ in their last bits.
     """
 
     def __init__(self, file: Path | None, parts: dict[str, Any], *, every_s: float | None = None, writes: bool = True):
+        """Loads the state if the file exists.
+
+        Args:
+            file: Checkpoint; None to save nothing.
+            parts: Objects with `state_dict` and `load_state_dict`, by name.
+            every_s: Seconds between checkpoints. Default: 60.
+            writes: Whether this process saves. Default: True.
+
+        Raises:
+            InputError: If the checkpoint is damaged or has other settings.
+        """
         self.file, self.parts, self.every_s, self.writes = file, parts, every_s, writes
         self.done = 0
         self.history: list[dict[str, float]] = []
@@ -34,7 +44,14 @@ class Resumable:
             self._load(file)
 
     def steps(self, most: int) -> Iterator[int]:
-        """Iterates over the remaining steps."""
+        """Iterates over the remaining steps and saves the state in between.
+
+        Args:
+            most: Total number of steps.
+
+        Yields:
+            Number of completed steps.
+        """
         every_s = SAVE_EVERY_S if self.every_s is None else self.every_s
         saved = time.monotonic()
         while self.done < most and not self._is_last:
@@ -53,7 +70,7 @@ class Resumable:
             return
         states = {name: part.state_dict() for name, part in self.parts.items()}
         state = {"done": self.done, "history": self.history, "parts": states}
-        packed = io.BytesIO()  # for torch's own writing to a full disk ends in errors of all kinds
+        packed = io.BytesIO()  # torch.save to a full disk raises errors of many types
         torch.save(state | {"threads": torch.get_num_threads()}, packed)
         with atomic_file(self.file) as temporary:
             temporary.write_bytes(packed.getbuffer())
@@ -68,7 +85,7 @@ class Resumable:
                 f"{file} cannot be resumed ({str(error).splitlines()[0][:80]}); delete it to start over"
             ) from None
         self.done, self.history = saved["done"], saved["history"]
-        _use_threads(int(saved.get("threads", torch.get_num_threads())), file)  # older files do not have it
+        _use_threads(int(saved.get("threads", torch.get_num_threads())), file)  # missing in older files
 
 
 def _use_threads(threads: int, file: Path) -> None:

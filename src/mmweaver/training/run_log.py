@@ -1,4 +1,4 @@
-"""Log of a training run: lines of figures, pictures, and TensorBoard files."""
+"""Log of a training run: rows of figures, pictures, and TensorBoard files."""
 
 import json
 from pathlib import Path
@@ -15,13 +15,19 @@ LOG, PICTURES, BOARD = "log.jsonl", "pictures", "tensorboard"
 
 
 class RunLog:
-    """log.jsonl, pictures/ and, where asked for, tensorboard/ in the folder of a run.
-
-    `done` steps were completed before; entries of an interrupted run after those are dropped. Raises InputError where
-    TensorBoard is requested but not installed.
-    """
+    """log.jsonl, pictures/ and, if requested, tensorboard/ in the folder of a run."""
 
     def __init__(self, out: Path, done: int, *, tensorboard: bool = False):
+        """Opens the log and drops entries of an interrupted run after its checkpoint.
+
+        Args:
+            out: Folder of the run.
+            done: Number of completed steps.
+            tensorboard: Whether to write TensorBoard files. Default: False.
+
+        Raises:
+            InputError: If TensorBoard is requested but not installed.
+        """
         self.out, self.file = out, out / LOG
         self.board = _writer(out / BOARD, done) if tensorboard else None
         if self.file.is_file():
@@ -30,7 +36,11 @@ class RunLog:
                 temporary.write_text("".join(f"{line}\n" for line in kept), encoding="utf-8")
 
     def row(self, figures: dict[str, Any]) -> None:
-        """Logs the figures of a step, if it is one of every 50 or a validation."""
+        """Logs the figures of a step if it is a multiple of 50 or has a validation.
+
+        Args:
+            figures: Fields of `Progress`.
+        """
         step = figures["step"]
         if step % ROW_EVERY and figures["validation"] is None:
             return
@@ -41,7 +51,12 @@ class RunLog:
             self.board.flush()
 
     def picture(self, step: int, image: np.ndarray) -> None:
-        """Saves a picture (row, column, 3) uint8 of a step."""
+        """Saves a picture.
+
+        Args:
+            step: Number of completed steps.
+            image: Picture, (row, column, 3) uint8.
+        """
         from PIL import Image
 
         with atomic_file(self.out / PICTURES / f"step_{step:06d}.png") as temporary:
@@ -50,7 +65,7 @@ class RunLog:
             self.board.add_image("validation", image, step, dataformats="HWC")
 
     def close(self) -> None:
-        """Closes the files."""
+        """Closes the TensorBoard files."""
         if self.board is not None:
             self.board.close()
 

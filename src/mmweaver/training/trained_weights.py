@@ -1,4 +1,4 @@
-"""The weights of a training with their model card, written into its folder."""
+"""Weights of a training run with their model card, written into its folder."""
 
 import hashlib
 from dataclasses import asdict
@@ -18,13 +18,16 @@ from mmweaver.training.trainer import Trainer
 
 
 def weights_card(trainer: Trainer[Any], *, dataset_sha256: str, radar: str, **more: Any) -> WeightsCard:
-    """The header of the weights of a run.
+    """Builds the header of the weights of a run.
 
     Args:
-        trainer: The run, at its end.
-        dataset_sha256: Hash of the data set's plan, or of the captures' cubes.
+        trainer: The finished run.
+        dataset_sha256: SHA-256 of the data set's plan, or of the captures' cubes.
         radar: Name of the radar.
-        more: Further fields; `settings` are added to those of the recipe.
+        **more: Further fields; `settings` are added to those of the recipe.
+
+    Returns:
+        The header.
     """
     recipe = trainer.recipe
     settings = asdict(recipe) | {"precision": trainer.compute.precision} | more.pop("settings", {})
@@ -44,16 +47,19 @@ def weights_card(trainer: Trainer[Any], *, dataset_sha256: str, radar: str, **mo
 def write_trained(
     out: Path, trainer: Trainer[Any], card: WeightsCard, *, data: str, evaluated_on: str, figures: Figures, page: Page
 ) -> Path:
-    """Writes `out`/weights.safetensors and its model card README.md; returns the path of the weights.
+    """Writes weights.safetensors and its model card README.md.
 
     Args:
         out: Folder of the run.
-        trainer: The run; its learner holds the best network.
-        card: The header.
-        data: What the network was trained on, a sentence.
-        evaluated_on: What the figures were measured on, a sentence.
-        figures: The best validation and its baselines.
+        trainer: The finished run, whose learner has the best weights.
+        card: Header of the weights.
+        data: Sentence on the training data.
+        evaluated_on: Sentence on the evaluation data.
+        figures: Scores of the network and its baselines.
         page: Text of the recipe's model cards.
+
+    Returns:
+        Path of the weights.
     """
     file = out / WEIGHTS_FILE
     save_weights(file, trainer.learner.network, card)
@@ -73,7 +79,20 @@ def write_recipe_weights(
     figures: Figures,
     **settings: Any,
 ) -> Path:
-    """The same of a recipe that is trained on splits of a data set; `settings`: more than the recipe's own."""
+    """Writes weights and model card of a recipe that is trained on splits of a data set.
+
+    Args:
+        out: Folder of the run.
+        data: Folder of the set.
+        trainer: The finished run.
+        splits: Splits used for training.
+        page: Text of the recipe's model cards.
+        figures: Scores of the network and its baselines.
+        **settings: Settings in addition to those of the recipe.
+
+    Returns:
+        Path of the weights.
+    """
     card = weights_card(
         trainer,
         dataset_sha256=hashlib.sha256(plan_of(data).encode()).hexdigest(),

@@ -3,10 +3,10 @@
     sample(step, share) -> batch -> learner.terms(batch) -> {name: term of the loss} -> step -> files in `out`
 
     checkpoint.pt        everything needed to resume exactly, every minute
-    best.safetensors     the weights with the lowest validation loss
+    best.safetensors     weights with the lowest validation loss
     log.jsonl, tensorboard/, pictures/     logs
 
-A recipe is a dataclass that derives from `LoopRecipe`, a network a `Learner`.
+A recipe is a dataclass derived from `LoopRecipe`, a network a `Learner`.
 Reference: docs/decisions/training-loop.md.
 """
 
@@ -31,28 +31,28 @@ from mmweaver.training.resuming import Resumable
 from mmweaver.training.run_log import RunLog
 
 BEST_FILE = "best.safetensors"
-WORST_SKIPS = 20  # consecutive steps with gradients that are not finite before training stops
+WORST_SKIPS = 20  # consecutive steps with non-finite gradients after which training stops
 
 
 @dataclass(frozen=True, kw_only=True)
 class LoopRecipe:
-    """Hyperparameters of a training. Batches follow from seed and step, so a run may be interrupted anywhere."""
+    """Hyperparameters of a training. Batches depend on seed and step only, so a run can be interrupted at any time."""
 
     name: str
     steps: int = 6000
-    batch_size: int = 3  # of all processes together
+    batch_size: int = 3  # over all processes
     learning_rate: float = 1e-3
     warm_up_steps: int = 200
-    is_cosine: bool = True  # else the rate is constant, and a run may be extended by more steps
+    is_cosine: bool = True  # cosine decay; otherwise a constant rate, and the run can be extended by more steps
     weight_decay: float = 1e-4
-    largest_gradient: float | None = 5.0  # norm to clip to; None: no clipping
+    largest_gradient: float | None = 5.0  # gradient norm is clipped to this; None: no clipping
     seed: int = 0
     validate_every: int = 250
     validation_batches: int = 8
     patience: int = 12  # validations without improvement before training stops early
 
     def rate(self, step: int) -> float:
-        """Learning rate of a step."""
+        """Learning rate of a step: linear warm-up, then cosine decay or constant."""
         rate = self.learning_rate * min(1.0, (step + 1) / max(self.warm_up_steps, 1))
         return rate * (0.5 + 0.5 * math.cos(math.pi * step / self.steps)) if self.is_cosine else rate
 
@@ -68,7 +68,7 @@ class Learner(nn.Module):
         raise NotImplementedError
 
     def figures(self, batch: Any) -> dict[str, Tensor]:
-        """Further figures of a validation batch, averaged over it."""
+        """Further scores of a validation batch, averaged over it."""
         return {}
 
     def picture(self) -> np.ndarray | None:
@@ -76,6 +76,7 @@ class Learner(nn.Module):
         return None
 
     def forward(self, batch: Any) -> dict[str, Tensor]:
+        """Calls `terms`, so that wrappers for several processes apply."""
         return self.terms(batch)
 
 
@@ -88,7 +89,7 @@ class Progress:
     loss: float
     terms: dict[str, float]
     validation: float | None
-    figures: dict[str, float]  # further figures of the validation batches
+    figures: dict[str, float]  # further scores of the validation batches
     seconds: float
     learning_rate: float
     gradient_norm: float
@@ -106,15 +107,15 @@ class Trainer(Generic[LearnerT]):
         learner: The network with its loss.
         recipe: Hyperparameters.
         out: Folder of checkpoint, log and weights; a checkpoint there is resumed.
-        train: `train(step, share)` samples the part of a step's batch that belongs to one of several processes.
-        validation: `validation(index, share)`, one of a few fixed batches.
+        batches: `train(step, share)` samples the part of a step's batch that belongs to one of several processes;
+            `validation(index, share)` is one of a few fixed batches.
         compute: Device, precision and process; default: the CPU in float32, alone.
         is_tuning: Whether the initial weights are validated first, as the ones to beat.
         tensorboard: Whether TensorBoard's files are written, too.
         save_every_s: Seconds between checkpoints; default 60.
 
     Raises:
-        InputError: For a checkpoint with other settings, or a batch that processes cannot share evenly.
+        InputError: If the checkpoint has other settings, or processes cannot share a batch evenly.
     """
 
     def __init__(
@@ -123,8 +124,7 @@ class Trainer(Generic[LearnerT]):
         recipe: LoopRecipe,
         out: Path,
         *,
-        train: BatchSampler,
-        validation: BatchSampler,
+        batches: tuple[BatchSampler, BatchSampler],
         compute: ComputeDevice | None = None,
         is_tuning: bool = False,
         tensorboard: bool = False,
@@ -132,7 +132,7 @@ class Trainer(Generic[LearnerT]):
     ):
         self.compute = compute or ComputeDevice()
         self.learner = learner.to(self.compute.device)
-        self.recipe, self.out, self._train, self._validation = recipe, out, train, validation
+        self.recipe, self.out, (self._train, self._validation) = recipe, out, batches
         if recipe.batch_size % self.compute.share[1]:
             raise InputError(
                 f"a batch of {recipe.batch_size} cannot be shared by {self.compute.share[1]} processes evenly;"
@@ -154,7 +154,14 @@ class Trainer(Generic[LearnerT]):
         return self.resumable.done
 
     def run(self, listener: Listener | None = None) -> None:
-        """Resumes from the last checkpoint, trains to the end, and loads the best weights into `learner`."""
+        """Resumes from the last checkpoint, trains to the end, and loads the best weights into `learner`.
+
+        Args:
+            listener: Called with the progress of each step. Default: none.
+
+        Raises:
+            InputError: If gradients stay non-finite.
+        """
         began, recipe = time.monotonic(), self.recipe
         if self.is_tuning and self.step == 0:
             self._validate(0)
@@ -192,7 +199,7 @@ class Trainer(Generic[LearnerT]):
         for group in self.optimiser.param_groups:
             group["lr"] = rate
         batch = place.moved(self._train(step, place.share))
-        # dropout follows from the step's number, so that a resumed run equals an uninterrupted one
+        # seed dropout by step, so that a resumed run equals an uninterrupted one
         own = () if place.is_first else (place.share[0],)
         torch.manual_seed(int(stream(recipe.seed, "dropout", step, *own).integers(2**31)))
         self.learner.train()
@@ -219,7 +226,7 @@ class Trainer(Generic[LearnerT]):
             )
 
     def _validate(self, step: int) -> tuple[float, dict[str, float]]:
-        """Validates; saves the weights if they are the best so far, and the picture. Returns loss and figures."""
+        """Validates; saves the weights if they are the best so far, and a picture. Returns loss and scores."""
         value, figures = self._evaluate()
         is_better = self.best.improved_by(value, figures)
         if self.log is not None:
@@ -232,21 +239,21 @@ class Trainer(Generic[LearnerT]):
         return value, figures
 
     def validation_batches(self) -> Iterator[Any]:
-        """The fixed batches, one after the other, on this process's device."""
+        """Iterates over the fixed batches, on the device of this process."""
         for index in range(self.recipe.validation_batches):
             yield self.compute.moved(self._validation(index, (0, 1)))
 
     def validation_loss(self) -> float:
-        """Mean loss over the fixed batches, shared among the processes."""
+        """Mean loss over the fixed batches, which are shared among the processes."""
         return self._evaluate()[0]
 
     def _evaluate(self) -> tuple[float, dict[str, float]]:
-        """Means over the fixed batches, each evaluated by one of the processes."""
+        """Means over the fixed batches, each of which is evaluated by one process."""
         place, count = self.compute, self.recipe.validation_batches
         self.learner.eval()
         rows: list[dict[str, float]] = []
         with torch.inference_mode(), place.arithmetic():
-            # a process without a batch of its own looks at the first, which then counts for nothing
+            # a process without a batch evaluates the first one with zero weight
             for index in range(place.share[0], count, place.share[1]) or (0,):
                 batch = place.moved(self._validation(index, (0, 1)))
                 loss = torch.stack(list(self.learner.terms(batch).values())).sum()
@@ -254,7 +261,7 @@ class Trainer(Generic[LearnerT]):
                 rows.append({name: float(value) for name, value in figures.items()})
         counts = place.share[0] < count
         sums = torch.tensor([counts * sum(row[name] for row in rows) for name in rows[0]], dtype=torch.float64)
-        # accelerate averages; on the device, for NCCL knows no others
+        # accelerate averages over processes; NCCL requires tensors on the device
         means = place.mean(sums.to(place.device)) * place.share[1] / count
         loss, *others = means.tolist()
         return loss, dict(zip(list(rows[0])[1:], others, strict=True))
@@ -266,15 +273,23 @@ class Trainer(Generic[LearnerT]):
 
 
 class BestValidation:
-    """The best validation so far, and its recipe; part of the checkpoint."""
+    """Best validation so far, and the recipe; part of the checkpoint."""
 
     def __init__(self, recipe: dict[str, Any]):
-        # as restored from a checkpoint
+        # JSON round trip, to compare equal to a restored checkpoint
         self.recipe, self.value, self.since = parse_json(json.dumps(recipe), "the recipe"), math.inf, 0
         self.figures: dict[str, float] = {}
 
     def improved_by(self, value: float, figures: dict[str, float] | None = None) -> bool:
-        """Records a validation; returns whether it is the best so far."""
+        """Records a validation.
+
+        Args:
+            value: Validation loss.
+            figures: Further scores. Default: none.
+
+        Returns:
+            Whether it is the best so far.
+        """
         is_better = value < self.value
         self.since = 0 if is_better else self.since + 1
         if is_better:
@@ -282,10 +297,19 @@ class BestValidation:
         return is_better
 
     def state_dict(self) -> dict[str, Any]:
+        """State for the checkpoint."""
         return {"recipe": self.recipe, "value": self.value, "since": self.since, "figures": self.figures}
 
     def load_state_dict(self, state: dict[str, Any]) -> None:
-        # settings that another version does not have were those of today; a constant rate may be extended
+        """Restores the state.
+
+        Args:
+            state: Result of `state_dict`.
+
+        Raises:
+            InputError: If the recipe differs.
+        """
+        # settings unknown to the older version had today's defaults; runs with a constant rate may be extended
         before = {name: state["recipe"].get(name, value) for name, value in self.recipe.items()}
         if not self.recipe.get("is_cosine", True):
             before["steps"] = self.recipe["steps"]

@@ -12,11 +12,21 @@ from mmweaver.signal.spectra import azimuth_axis_rad
 
 SPAN_DB = 50.0
 MAX_ROWS = 3
-MAPS = ("range_doppler", "range_doppler", "range_azimuth", "range_azimuth")  # alternately ground truth and network
+MAPS = ("range_doppler", "range_doppler", "range_azimuth", "range_azimuth")  # alternating ground truth and network
 
 
 def draw_sheet(truth: PowerMaps, network: PowerMaps, config: RadarConfig, made: str = "network, mean") -> np.ndarray:
-    """A row per sequence, its middle frame; image (row, column, 3) uint8. Pairs share the peak of the ground truth."""
+    """Draws maps of ground truth and network, one row per sequence at its middle frame.
+
+    Args:
+        truth: Ground truth, (sequence, frame, range, other).
+        network: Prediction of the same shape; each pair shares the peak of the ground truth.
+        config: The radar.
+        made: Title of the predictions. Default: "network, mean".
+
+    Returns:
+        Image, (row, column, 3) uint8.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -55,13 +65,21 @@ def draw_sheet(truth: PowerMaps, network: PowerMaps, config: RadarConfig, made: 
 
 
 def canvas_image(canvas: Any) -> np.ndarray:
-    """A canvas of matplotlib as an image (row, column, 3) uint8."""
+    """A matplotlib canvas as image, (row, column, 3) uint8."""
     canvas.draw()
     return np.asarray(canvas.buffer_rgba())[..., :3].copy()
 
 
 def differences_db(truth: PowerMaps, network: PowerMaps) -> dict[str, float]:
-    """Mean difference in dB over the non-zero cells of the ground truth and over the sequences, by map."""
+    """Mean map difference over sequences, see `map_scores.log_map_difference_db`.
+
+    Args:
+        truth: Ground truth, (sequence, frame, range, other).
+        network: Prediction of the same shape.
+
+    Returns:
+        Difference in dB by map.
+    """
     found = {}
     for name in ("range_doppler", "range_azimuth"):
         pairs = zip(getattr(network, name), getattr(truth, name), strict=True)
@@ -78,7 +96,16 @@ def _numpy(values: Tensor) -> np.ndarray:
 
 
 def draw_confusion(true: np.ndarray, answers: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
-    """Image (row, column, 3) uint8 of the row-normalised confusion matrix; `true` and `answers` (n,) are indices."""
+    """Draws a row-normalised confusion matrix.
+
+    Args:
+        true: True classes, (n,).
+        answers: Predicted classes, (n,).
+        names: Names of the classes.
+
+    Returns:
+        Image, (row, column, 3) uint8.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -100,7 +127,16 @@ def draw_confusion(true: np.ndarray, answers: np.ndarray, names: tuple[str, ...]
 
 
 def confusion(true: np.ndarray, answers: np.ndarray, count: int) -> np.ndarray:
-    """Row-normalised confusion matrix (true, predicted); rows of absent classes are zero."""
+    """Row-normalised confusion matrix.
+
+    Args:
+        true: True classes, (n,).
+        answers: Predicted classes, (n,).
+        count: Number of classes.
+
+    Returns:
+        Matrix (true, predicted); rows of absent classes are zero.
+    """
     counts = np.zeros((count, count))
     np.add.at(counts, (true, answers), 1)
     return counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)

@@ -32,7 +32,7 @@ from mmweaver.evaluation.background_board import BackgroundBoard
 from mmweaver.io.radar_file import load_firmware, load_radar
 from mmweaver.io.result_folder import META_VERSION, file_digest
 from mmweaver.io.ti_calibration import read_ti_calibration
-from mmweaver.models.methods import DEFAULT_METHOD, METHODS, Learned, Method, Physics, Signal
+from mmweaver.models.methods import DEFAULT_METHOD, METHODS, Learned, Method, Signal
 from mmweaver.motion.animation.resample import resample
 from mmweaver.motion.compose import Motion
 from mmweaver.motion.continuous import ContinuousMotion
@@ -41,6 +41,8 @@ from mmweaver.motion.mocap.clip_placement import place_clip
 from mmweaver.motion.mocap.read_motion import read_motion
 from mmweaver.motion.multi_person import compose_people
 from mmweaver.motion.people import subject_of
+from mmweaver.motion.planning.placement import Conditions
+from mmweaver.propagation.static_paths import ALL_PATHS
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from, unseen_notes
 from mmweaver.signal.detection import check_points, detect, needs_adc
 from mmweaver.weaver.generation import Generation, Room
@@ -141,7 +143,7 @@ class Weaver(RoomReader):
         """Whether METHODS gives, by the name alone, a method that makes the same signals."""
         if self.weights is not None or self.method_name not in METHODS:
             return False
-        return not isinstance(self.method, Physics) or self.method.propagation == Physics().propagation
+        return getattr(self.method, "propagation", ALL_PATHS) == ALL_PATHS
 
     @staticmethod
     def read_motion(
@@ -257,12 +259,10 @@ class Weaver(RoomReader):
         (person,) = request.people
         motion = ContinuousMotion(
             room.scene,
+            Conditions(seed=request.seed, start_m=person.start_m, heading_rad=request.heading_rad),
             frame_period_s=request.config.frame_period_s,
             range_window_m=request.range_window_m,
-            seed=request.seed,
             farthest_m=request.config.farthest_bin_m,
-            start_m=person.start_m,
-            heading_rad=request.heading_rad,
             height_m=person.height_m,
             subject=person.subject,
         )

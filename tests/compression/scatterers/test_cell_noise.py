@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.compression.scatterers.cell_noise import cell_noise
+from mmweaver.compression.scatterers.cell_noise import cell_noise, overlapping_noise
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.signal.cube import radar_cube
+from mmweaver.signal.windows import hann
 
 EVERY_BIN = replace(AWR1843, num_samples=64, first_range_bin=0, num_range_bins=64)
 
@@ -32,3 +33,11 @@ def test_cell_noise_has_the_statistics_of_processed_white_samples(config: RadarC
     for axis in (0, 1, 2, 3):
         for step in (1, 2, 3):
             assert alike(got, axis, step) == pytest.approx(alike(wanted, axis, step), abs=0.02), (axis, step)
+
+
+def test_overlapping_frames_share_chirps():
+    hop, num_loops = AWR1843.num_loops // 4, AWR1843.num_loops
+    got = overlapping_noise(np.random.default_rng(0), AWR1843, 8, hop)
+    assert np.mean(np.abs(got) ** 2) == pytest.approx(1.0, rel=0.05)
+    chirps = np.fft.ifft(got, axis=2)[:, :, 1:] / hann(num_loops)[1:, None]  # the window is blind to the first
+    assert np.allclose(chirps[:-1, :, hop:], chirps[1:, :, : num_loops - 1 - hop], atol=1e-3 * np.abs(chirps).mean())

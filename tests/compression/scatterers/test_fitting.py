@@ -1,8 +1,9 @@
 import torch
 
+from mmweaver.compression.beams import beams_of
 from mmweaver.compression.scatterers.fit_window import FitWindow
 from mmweaver.compression.scatterers.fitting import FitRecipe, fitted
-from mmweaver.compression.scatterers.layers import rendered
+from mmweaver.compression.scatterers.layers import rendered, static_cells
 from tests.compression.echoes import SMALL, crowd
 
 
@@ -48,3 +49,24 @@ def test_antenna_gains_are_learned():
     error = float(10 * torch.log10(left.abs().square().sum() / working.abs().square().sum()))
     assert error < plain - 1
     assert abs(layers.calibration[3] / layers.calibration[4]) > 1.1
+
+
+def test_the_parameter_budget_holds_and_useless_static_beams_are_dropped():
+    """A wall straight ahead and many points: few beams represent the wall, and the points get the rest."""
+    fit_window = FitWindow.of(SMALL, 3, 0)
+    wall = torch.zeros(24, 12, dtype=torch.complex64)
+    wall[6:10] = 0.3
+    working = fit_window.working(crowd().values) + static_cells(wall, fit_window.response, fit_window.axes)
+    left_db = {}
+    for most in (600, 1200):
+        layers = fitted(working, fit_window, FitRecipe(num_points=999, num_values=most, stages=10))
+        assert 0.9 * most < layers.num_values(fit_window.response) <= most
+        assert layers.active_beams is not None
+        active = torch.from_numpy(layers.active_beams)
+        assert 6 < int(active.sum()) < 0.8 * active.numel()
+        beams = layers.static @ torch.from_numpy(beams_of(SMALL)).to(layers.static.dtype).T
+        assert float(beams[~active].abs().max()) < 1e-5
+        left = working - rendered(layers, fit_window.response, fit_window.axes)
+        left_db[most] = float(10 * torch.log10(left.abs().square().sum() / working.abs().square().sum()))
+    assert left_db[1200] < left_db[600] - 2
+    assert left_db[1200] < -30

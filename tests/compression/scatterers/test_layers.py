@@ -2,10 +2,12 @@ import numpy as np
 import torch
 
 from mmweaver.compression.scatterers.layers import (
+    Layers,
     compact,
     fit_static,
     static_cells,
     static_response,
+    static_values,
     strongest,
     subtract_static,
 )
@@ -40,3 +42,15 @@ def test_a_static_layer_is_recovered():
     assert np.allclose(found, static.numpy(), atol=1e-5)
     subtract_static(cells, found, at_rest)
     assert np.abs(cells).max() < 1e-4
+
+
+def test_parameters_are_counted():
+    size = torch.tensor([[0.5, 0.2]])
+    points = Points(range_bin=size, doppler_bin=size, direction=torch.stack([size, size], -1), amplitude=size + 0j)
+    gains = torch.full((12,), 2 + 0j)
+    layers = Layers(points=points, static=torch.ones(24, 12) + 0j, calibration=gains, noise_power=1.0)
+    assert layers.num_values(PointResponse(SMALL)) == 12 + 2 * 24 * 12 + 24 + 1
+    mask = torch.zeros(64, 12, dtype=torch.bool).numpy()
+    mask[3, :5] = True
+    assert static_values(mask, mask.size) == 2 * 5 + 64 * 12 / 32
+    assert static_values(~mask, mask.size) == 2 * 64 * 12  # cheaper without the marks

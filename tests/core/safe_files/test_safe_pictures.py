@@ -79,5 +79,5 @@ def test_an_animation_is_read(tmp_path: Path):
     frames[0].save(tmp_path / "a.gif", save_all=True, append_images=frames[1:])
     assert [int(picture.mean()) for picture in read_animation(tmp_path / "a.gif")] == [0, 255]
     (tmp_path / "a.gif").write_bytes(b"GIF89a")
-    with pytest.raises(InputError, match=r"damaged or no \.gif"):
+    with pytest.raises(InputError, match=r"no \.gif"):
         read_animation(tmp_path / "a.gif")

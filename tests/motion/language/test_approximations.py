@@ -26,7 +26,7 @@ def test_known_sentences_are_left_alone_and_unknown_ones_refused():
     text = "A person walks to the left, then waves."
     assert apply_approximations(text, only_always=True) == text
     for unknown in ("a person does a handstand", "a person teleports", "a person does a cartwheel"):
-        with pytest.raises(InputError, match=r"names no activity|cannot be shown"):
+        with pytest.raises(InputError, match=r"no activity|cannot"):
             parse(unknown)
 
 

@@ -104,7 +104,7 @@ def test_cells_are_where_the_words_say():
     assert cells_of(Place("left"), floor)[:, 0].max() < np.median(every[:, 0])
     away = np.hypot(*cells_of(Place("range", distance_m=2.0), floor).T)
     assert np.abs(away - 2.0).max() < 0.21
-    with pytest.raises(InputError, match="no window was found"):
+    with pytest.raises(InputError, match="no window"):
         cells_of(Place("near", "window"), floor)
     with pytest.raises(InputError, match=r"9 m from the radar"):
         cells_of(Place("range", distance_m=9.0), floor)
@@ -116,5 +116,5 @@ def test_two_places_are_both_obeyed_or_refused():
     assert len(cells)
     assert np.all(np.abs(np.hypot(*cells.T) - 2.0) < 0.21)
     assert np.all(cells[:, 0] < 0.1)
-    with pytest.raises(InputError, match=r"0\.2 m from the radar, on the left"):
+    with pytest.raises(InputError, match=r"0\.2 m from .* left"):
         cells_of(Place("range", distance_m=0.2).together_with(Place("left")), floor)

@@ -66,9 +66,9 @@ def test_refused_with_the_reason(text: str):
 
 
 def test_an_unknown_activity_says_what_comes_nearest_and_where_all_are_listed():
-    with pytest.raises(InputError, match=r"known are standing, walking and .*'mmweaver motions'"):
+    with pytest.raises(InputError, match=r"standing, walking .*'mmweaver motions'"):
         parse("the person teleports")
-    with pytest.raises(InputError, match="did you mean 'a person dances'"):
+    with pytest.raises(InputError, match="'a person dances'"):
         parse("a person grooves along")
 
 

@@ -1,5 +1,7 @@
 """Gaps, zeros, T-poses and joints that are mixed up."""
 
+import re
+
 import numpy as np
 import pytest
 from mocap_files import walk
@@ -57,7 +59,8 @@ def test_a_t_pose_in_front_is_cut_off_where_the_motion_jumps():
     assert not is_t_pose(walk()).any()
     joints, notes = cut_t_pose(np.concatenate([t_pose(4), walk()]), FPS, "walk")
     np.testing.assert_array_equal(joints, walk())
-    assert notes == ("4 frames of T-pose at the start of walk cut off",)
+    (note,) = notes
+    assert re.search("4 frames .*walk", note)
 
 
 def test_a_t_pose_that_is_left_by_moving_stays_and_is_said():
@@ -75,5 +78,5 @@ def test_a_t_pose_that_is_left_by_moving_stays_and_is_said():
 
 def test_joints_in_another_order_are_noticed():
     check_bones(walk(), "walk")
-    with pytest.raises(InputError, match="not those that are expected"):
+    with pytest.raises(InputError, match="not those"):
         check_bones(walk()[:, np.random.default_rng(0).permutation(22)], "walk")

@@ -77,13 +77,11 @@ def test_nothing_goes_through_furniture_and_the_motion_is_only_turned_and_moved(
 
 def test_no_room_is_said_with_what_there_is():
     far = MotionClip(joints_m=walk(60.0, 2.0) * np.array([4.0, 4.0, 1.0]), fps=60.0, label="leaps")
-    with pytest.raises(
-        InputError, match=r"no room for leaps: its track is \d\.\d m across, \d+\.\d m2 .*--as-recorded"
-    ):
+    with pytest.raises(InputError, match=r"leaps: .*\d\.\d m across, \d+\.\d m2 .*--as-recorded"):
         placed(room(), far)
-    with pytest.raises(InputError, match=r"the start 0\.3,9 is outside .* nearest free place is"):
+    with pytest.raises(InputError, match=r"0\.3,9 is outside .* nearest"):
         placed(room(), start_m=(0.3, 9.0))
-    with pytest.raises(InputError, match=r"from 0,1\.2 in the given heading"):
+    with pytest.raises(InputError, match=r"0,1\.2 .* heading"):
         placed(room(), start_m=(0.0, 1.2), heading_rad=-math.pi / 2)
     with pytest.raises(InputError, match="no free floor"):
         placed(room(boxes=((-9.0, 9.0, 0.0, 9.0),)))

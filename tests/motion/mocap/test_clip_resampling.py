@@ -66,7 +66,7 @@ def test_the_last_frame_lasts_too_and_no_longer():
     _, joints = resampled_clip(whole, 2.0)
     assert np.isfinite(joints).all()
     assert figures(joints)[1] < 1.6 * figures(walk(TRUTH_FPS))[1]
-    with pytest.raises(InputError, match=r"lasts 2 s, 2\.1 s are asked for"):
+    with pytest.raises(InputError, match=r"2 s, 2\.1 s"):
         check_lasts(whole, 2.1)
 
 

@@ -108,7 +108,7 @@ def test_feet_that_are_put_in_point_ahead():
 
 def test_what_is_missing_is_named():
     convention = {ours: theirs for ours, theirs in CONVENTIONS["cmu"].items() if "knee" not in ours}
-    with pytest.raises(InputError, match=r"left_knee, right_knee; the file's joints are Hips"):
+    with pytest.raises(InputError, match=r"left_knee, right_knee; .* Hips"):
         to_22(renamed(convention), "walk.bvh")
     tags = RawMotion(names=tuple(f"marker{k}" for k in range(40)), positions=np.zeros((3, 40, 3)), kind="test")
     with pytest.raises(InputError, match="and more"):

@@ -35,7 +35,7 @@ def test_the_published_format_is_read_and_its_sizes_are_found(tmp_path: Path):
 
 def test_pickles_of_something_else_are_not_opened(tmp_path: Path):
     torch.save({"state_dict": {}, "hyper_parameters": Anything()}, tmp_path / "other.tar")
-    with pytest.raises(InputError, match="pickled objects, which could run code and are not opened"):
+    with pytest.raises(InputError, match="pickled"):
         read_checkpoint(tmp_path / "other.tar")
     torch.save([1, 2, 3], tmp_path / "list.pt")
     torch.save({"state_dict": {"epoch": 3}}, tmp_path / "epoch.pt")
@@ -57,7 +57,7 @@ def test_files_that_are_cut_short_or_no_checkpoints(tmp_path: Path):
             read_checkpoint(tmp_path / name)
         assert "\n" not in str(caught.value)
         assert name in str(caught.value)
-    with pytest.raises(InputError, match="there is no checkpoint"):
+    with pytest.raises(InputError, match="no checkpoint"):
         read_checkpoint(tmp_path / "none.tar")
 
 

@@ -51,7 +51,7 @@ def test_a_walk_that_finds_no_room_is_shown_on_the_spot_and_said():
 
 def test_an_error_names_the_nearest_place_the_window_it_needs_and_radars():
     far = room(boxes=((-3.0, 3.0, 0.0, 3.6),), depth_m=8.0, width_m=6.0)
-    with pytest.raises(NoRoomError, match=r"nearest free place is .*try --range") as caught:
+    with pytest.raises(NoRoomError, match=r"nearest .*--range") as caught:
         _composed("a person waves", far)
     x, y = caught.value.recovery_options["nearest_place_m"]
     near_m, far_m = caught.value.recovery_options["range_m"]
@@ -66,7 +66,7 @@ def test_an_error_names_the_nearest_place_the_window_it_needs_and_radars():
 def test_a_place_outside_the_window_is_named_with_the_window_that_it_needs():
     deep = room(depth_m=8.0, width_m=6.0)
     text = "a person stands five metres away and waves"
-    with pytest.raises(NoRoomError, match=r"nobody can be 5 m .*try --range") as caught:
+    with pytest.raises(NoRoomError, match=r"5 m .*--range") as caught:
         _composed(text, deep)
     helped = compose(
         plan_motion(text, 2.0), deep, seed=0, range_window_m=tuple(caught.value.recovery_options["range_m"])
@@ -105,7 +105,8 @@ def test_what_finds_no_room_is_approximated_and_said_in_its_clause(text: str):
 
 def test_who_stumbles_on_the_spot_lifts_the_feet_and_stays():
     plan, notes = on_the_spot(plan_motion("he stumbles", 2.0), lambda step: step.moves)
-    assert notes == ("there is no room for 'he stumbles': the person stumbles on the spot",)
+    (note,) = notes
+    assert "'he stumbles'" in note
     joints_m = compose(plan, room(), seed=0, range_window_m=WINDOW_M).pose.joints_m
     assert np.ptp(joints_m[:, 0, :2], axis=0).max() < 0.2
     assert np.ptp(joints_m[:, 7:9, 2], axis=0).min() > 0.02

@@ -40,7 +40,7 @@ def test_a_corner_is_where_two_walls_meet_though_the_photo_ends_before():
     cells = cells_of(Place("in", "corner"), _floor(BACK, RIGHT))
     assert np.hypot(*(cells - [1.5, 3.0]).T).max() < 1.25
     for walls in ((), (BACK,), (BACK, _wall(4.5, 1.5, (-1.0, 0.0), 1.4))):
-        with pytest.raises(InputError, match=r"no corner of two walls was found.*it has a door, a seat, a table"):
+        with pytest.raises(InputError, match=r"no corner .*a door, a seat, a table"):
             cells_of(Place("in", "corner"), _floor(*walls))
 
 
@@ -49,7 +49,7 @@ def test_who_stands_against_a_wall_is_nearer_than_who_is_near_it():
     against, near = (cells_of(Place(relation, "wall"), floor) for relation in ("against", "near"))
     assert against[:, 1].min() > 2.35
     assert 2.05 < near[:, 1].min() < against[:, 1].min()
-    with pytest.raises(InputError, match="no wall was found"):
+    with pytest.raises(InputError, match="no wall"):
         cells_of(Place("near", "wall"), _floor())
 
 
@@ -94,6 +94,6 @@ def test_walks_end_at_the_middle_and_in_the_corner(text: str, goal_m: tuple[floa
 
 def test_without_a_photo_it_is_said_that_there_is_no_corner():
     made = act_out("a person waves in the corner")
-    assert any("there is no corner; it is shown where there is room" in note for note in made.assumptions)
+    assert any("no corner" in note for note in made.assumptions)
     assert made.clauses[0].status == "approximated"
     assert act_out("a person walks outside").pose.joints_m.size

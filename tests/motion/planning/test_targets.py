@@ -59,7 +59,7 @@ def test_ways_are_free_together_as_they_are_alone():
 
 def test_what_the_room_lacks_is_refused_with_what_it_has():
     scene = dataclasses.replace(room(seats=(seat(),)), landmarks=(DOOR, dataclasses.replace(DOOR, kind="table")))
-    with pytest.raises(InputError, match=r"no window was found.*it has a door, a seat, a table"):
+    with pytest.raises(InputError, match=r"no window .*a door, a seat, a table"):
         _placed(scene, "window")
     with pytest.raises(InputError, match="say a direction instead"):
         _placed(room(), "door")
@@ -86,7 +86,7 @@ def test_who_points_at_a_landmark_faces_it(text: str):
     end_s = np.array([plan.duration_s])
     x, y = DOOR.position_m[:2] - path.position_m(end_s)[0]
     assert np.angle(np.exp(1j * (path.facing_rad(end_s)[0] - np.arctan2(y, x)))) == pytest.approx(0, abs=0.2)
-    with pytest.raises(InputError, match="no door was found"):
+    with pytest.raises(InputError, match="no door"):
         place(plan, FloorMap(room(), WINDOW_M, 1.75), SkeletonProportions(1.75), Conditions(seed=1))
     assert any("no door to face" in note for note in drop_targets(plan).notes)
 
@@ -97,4 +97,4 @@ def test_who_cannot_walk_there_from_a_seat_gets_up_elsewhere():
     scene = dataclasses.replace(room(seats=(seat(y_m=2.4),)), landmarks=(table,))
     plan = plan_motion("a person gets up and walks to the table")
     placed = place(plan, FloorMap(scene, WINDOW_M, 1.75), SkeletonProportions(1.75), Conditions(seed=0))[0]
-    assert any("no seat of the photo can be used" in note for note in placed.assumptions)
+    assert any("no seat" in note for note in placed.assumptions)

@@ -55,7 +55,8 @@ def test_a_screen_gets_its_own_plane_and_not_the_walls():
     depth[30:80:4, 60:110:3] = 2.2
     closed, sentences = fill_panes(replace(photo, depth_m=depth))
     assert closed.depth_m[screen] == pytest.approx(np.full(screen.sum(), 2.2), rel=0.01)
-    assert sentences == ("1 screens: their missing depth was filled by the plane of their measured pixels.",)
+    (sentence,) = sentences
+    assert "1 screens" in sentence
 
 
 LENS = CameraIntrinsics(fx=120.0, fy=120.0, cx=79.5, cy=59.5, width=160, height=120)

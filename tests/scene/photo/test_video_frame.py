@@ -29,7 +29,7 @@ def test_frames_of_common_codecs(tmp_path: Path, codec: str, tolerance: int):
 
 def test_other_files_are_refused(tmp_path: Path):
     path = tmp_path / "color.avi"
-    with pytest.raises(InputError, match=r"cannot read .*color\.avi"):
+    with pytest.raises(InputError, match=r"read .*color\.avi"):
         read_video_frame(path, 0)
     for content in (b"", b"RIFF1234WAVE", b"RIFF\xff\0\0\0AVI " + bytes(30), avi_of(PICTURES)[:200]):
         path.write_bytes(content)
@@ -42,7 +42,7 @@ def test_a_damaged_frame_is_refused(tmp_path: Path):
     start = whole.index(b"\xff\xd8")
     path = tmp_path / "color.avi"
     path.write_bytes(whole[:start] + bytes(300) + whole[start + 300 :])
-    with pytest.raises(InputError, match=r"damaged or no video .*--rgb"):
+    with pytest.raises(InputError, match=r"no video .*--rgb"):
         read_video_frame(path, 0)
 
 
@@ -62,7 +62,7 @@ def test_a_playlist_is_refused_whatever_it_is_called(tmp_path: Path, kind: str, 
     path = tmp_path / f"color{suffix}"
     for other in ("other.avi", str(tmp_path / "other.avi"), "http://127.0.0.1:9/other.ts"):
         path.write_text(PLAYLISTS[kind].format(other=other))
-        with pytest.raises(InputError, match="damaged or no video"):
+        with pytest.raises(InputError, match="no video"):
             read_video_frame(path, 0)
 
 
@@ -83,5 +83,5 @@ def test_no_other_demultiplexer_can_be_reached(tmp_path: Path, container: str):
     for suffix in (".avi", ".mp4", ".mkv", ".gif"):
         path = tmp_path / f"color{suffix}"
         path.write_bytes(made.read_bytes())
-        with pytest.raises(InputError, match="damaged or no video"):
+        with pytest.raises(InputError, match="no video"):
             read_video_frame(path, 0)

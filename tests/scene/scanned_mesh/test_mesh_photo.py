@@ -114,7 +114,7 @@ def test_what_is_no_mesh_is_refused_in_one_line(content: bytes, suffix: str, tmp
 
 def test_what_is_no_room_is_refused(tmp_path: Path):
     trimesh.creation.icosphere(radius=0.1).export(str(tmp_path / "ball.ply"))
-    with pytest.raises(InputError, match=r"no room's size|no level surfaces"):
+    with pytest.raises(InputError, match=r"size|level"):
         read_mesh_photo(tmp_path / "ball.ply")
     path = furnished(tmp_path / "room.glb", Y_UP)
     for wrong, said in (({"unit": "mile"}, "unknown unit"), ({"unit": "mm"}, "right unit"), ({"up": "x"}, "y or z")):

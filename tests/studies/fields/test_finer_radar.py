@@ -3,6 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mmweaver.compression.phase_centring import centred
+from mmweaver.compression.signal_field import coordinates_on, finer_grid
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843, BGT60
 from mmweaver.core.records import AdcCube, PoseSequence
@@ -16,8 +18,6 @@ from studies.fields.finer_radar import (
     spectrum_on,
     starting_later,
 )
-from studies.fields.phase_centring import centred
-from studies.fields.sampling import coordinates_on, finer_grid
 from studies.scores.cube_scores import nmse_db
 from tests.cubes import SMALL, point_adc
 

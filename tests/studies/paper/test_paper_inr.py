@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 import torch
 
+from mmweaver.compression.signal_field import finer_grid
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid
 from mmweaver.core.seeding import stream
-from studies.fields.sampling import finer_grid
 from studies.paper.paper_inr import (
     MODULATIONS_PER_FRAME,
     BaseInrField,

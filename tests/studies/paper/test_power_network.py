@@ -13,8 +13,8 @@ from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.signal.spectra import azimuth_axis_rad, range_azimuth_power, range_doppler_power
 from studies.paper.power_cells import CellSizes
-from studies.paper.power_method import FieldRoom
-from studies.paper.power_network import PowerEncoding, PowerNetwork
+from studies.paper.power_method import FieldRoom, sample_cells
+from studies.paper.power_network import CellEchoes, PowerEncoding, PowerNetwork
 from tests.rooms import standing_person
 
 BLOB = torch.tensor([2.2, 1.1, 0.25, 0.0])  # range, velocity, direction cosines
@@ -57,9 +57,6 @@ def test_the_signal_is_where_its_cells_are(scene: Scene):
 
 def test_a_cell_turns_from_frame_to_frame_as_from_chirp_to_chirp():
     """One scatterer that moves with its velocity: the phase advances by 4 pi v T / wavelength."""
-    from mmweaver.propagation.mean_scatterers import CellEchoes
-    from mmweaver.propagation.speckle import sample_cells
-
     cell = torch.tensor([[[7, 8]]]).expand(3, 1, 2)
     speed = torch.tensor([0.0, 0.5]).expand(3, 1, 2)
     still = torch.ones(3, 1, 2)

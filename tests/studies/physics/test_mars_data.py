@@ -64,10 +64,10 @@ def test_what_is_no_recording_is_refused(tmp_path: Path):
     write_split(tmp_path, "test", [1, 2, 3])
     write_split(tmp_path, "validate", [1, 2])
     (tmp_path / "radar_data_validate.csv").write_bytes((tmp_path / "radar_data_test.csv").read_bytes())
-    with pytest.raises(InputError, match="3 frames of validate, the Kinect 2"):
+    with pytest.raises(InputError, match=r"3 frames .*Kinect 2"):
         read_mars(tmp_path, "validate")
     (tmp_path / "kinect_data_test.csv").write_text("a\nx\n")
-    with pytest.raises(InputError, match="no table of numbers"):
+    with pytest.raises(InputError, match="no table"):
         read_mars(tmp_path, "test")
     (tmp_path / "kinect_data_test.csv").write_text("a,b\n1,2\n")
     with pytest.raises(InputError, match="2 columns, 75"):

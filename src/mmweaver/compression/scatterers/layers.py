@@ -15,33 +15,47 @@ Array = np.ndarray
 StaticResponse = tuple[Float[Array, "bins"], slice]  # of Doppler bins, and which these are
 
 NO_RESPONSE = 1e-5  # relative to the peak
+BITS_OF_VALUE = 32  # float32
 
 
 @dataclass(frozen=True, kw_only=True)
 class Layers:
     """Parameters of one fit window, in units of its response.
 
-    Attributes:
-        points: Scatterers (frame, point), padded with amplitude zero.
-        static: Static clutter (range, antenna): one complex amplitude per range cell and antenna, of known Doppler
-            response.
-        calibration: Complex gains (antenna,) of the array.
-        noise_power: Noise power per cell, which is not part of a rendered cube.
+    `points` (frame, point) are padded with amplitude zero. `static` (range, antenna): static clutter, one complex
+    amplitude per range cell and antenna; its Doppler response is known. `calibration` (antenna,): complex gains of the
+    array. `noise_power`: per cell, not part of a rendered cube. `active_beams` (range, beam): beams of the static layer
+    that are not zero; None = all.
     """
 
     points: Points
     static: Tensor
     calibration: Tensor
     noise_power: float
+    active_beams: Array | None = None
 
     def counts(self) -> Tensor:
         """Number of scatterers (frame,)."""
         return (self.points.amplitude != 0).sum(dim=1)
 
+    def num_values(self, response: PointResponse) -> int:
+        """Number of real parameters: points, static layer, learned gains, and the noise power."""
+        points = int(self.counts().sum()) * values_of_point(response)
+        static = static_values(self.active_beams, self.static.numel()) if bool((self.static != 0).any()) else 0
+        gains = 2 * self.calibration.numel() if bool((self.calibration != 1).any()) else 0
+        return points + static + gains + 1
+
 
 def values_of_point(response: PointResponse) -> int:
     """Number of real parameters of one scatterer."""
     return VALUES_OF_POINT + response.num_directions
+
+
+def static_values(active_beams: Array | None, num_cells: int) -> int:
+    """Real parameters of a static layer: two per active beam, and one per 32 bits of the mask (range, beam)."""
+    if active_beams is None:
+        return 2 * num_cells
+    return min(2 * num_cells, 2 * int(active_beams.sum()) + -(-num_cells // BITS_OF_VALUE))
 
 
 def rendered(layers: Layers, response: PointResponse, axes: Axes) -> Tensor:

@@ -1,4 +1,4 @@
-"""Checks of arrays that came out of a file: type, shape, equal lengths, finite and plausible values."""
+"""Checks of arrays read from a file: dtype, shape, equal lengths, finite and plausible values."""
 
 from pathlib import Path
 
@@ -10,12 +10,24 @@ _WORDS = {"f": "real numbers", "fiu": "real numbers", "iu": "whole numbers", "c"
 
 
 def real_numbers(path: Path | str, name: str, values: np.ndarray) -> np.ndarray:
-    """An array of a file as float64; NaN is allowed. Raises InputError where it holds anything but real numbers."""
+    """Converts an array from a file to float64.
+
+    Args:
+        path: The file, for error messages.
+        name: Name of the array.
+        values: The array; nan is allowed.
+
+    Returns:
+        The array as float64.
+
+    Raises:
+        InputError: If it contains anything but real numbers, or infinity.
+    """
     return ArrayChecks(path).numbers(name, values, nan=True).astype(np.float64)
 
 
 class ArrayChecks:
-    """Checks arrays of one file. Axes of one name have one length in all of them."""
+    """Checks the arrays of one file; axes of the same name must have the same length in all of them."""
 
     def __init__(self, path: Path | str):
         self.path = path
@@ -32,22 +44,23 @@ class ArrayChecks:
         high: int | float = np.inf,
         nan: bool = False,
     ) -> np.ndarray:
-        """Checks type, shape and range of an array of numbers.
+        """Checks dtype, shape and range of an array.
 
         Args:
-            name: What it is called in errors.
+            name: Name in error messages.
             values: The array.
-            shape: A length or a name per axis; a name has one length in all arrays of the file. Default: any.
-            kinds: Letters of numpy for the types that are allowed.
-            low: Smallest value; of complex numbers of either part.
-            high: Largest value.
-            nan: Whether NaN is allowed.
+            shape: One length or axis name per axis; axes of the same name have the same length in all arrays of the
+                file. Default: any shape.
+            kinds: Allowed dtype kinds, as numpy's letters. Default: real numbers.
+            low: Smallest allowed value; for complex numbers, of real and imaginary part.
+            high: Largest allowed value.
+            nan: Whether nan is allowed. Default: False.
 
         Returns:
-            `values`.
+            `values`, unchanged.
 
         Raises:
-            InputError: where it is of another type or shape, not finite, or out of range.
+            InputError: If it has another dtype or shape, is not finite, or out of range.
         """
         if values.dtype.kind not in kinds:
             raise InputError(
@@ -63,7 +76,16 @@ class ArrayChecks:
         return values
 
     def shape(self, name: str, found: tuple[int, ...], wanted: tuple[int | str, ...]) -> None:
-        """Raises InputError where the shape `found` of an array is not `wanted`, as in `numbers`."""
+        """Checks a shape.
+
+        Args:
+            name: Name in error messages.
+            found: Actual shape.
+            wanted: Expected shape, as in `numbers`.
+
+        Raises:
+            InputError: If they differ.
+        """
         words = f"({', '.join(str(axis) for axis in wanted)})"
         if len(found) != len(wanted):
             raise InputError(f"{self.path}: {name} has shape {found}; it must be {words}")
@@ -83,7 +105,7 @@ class ArrayChecks:
             values = values[~np.isnan(values)]
             if not values.size:
                 return
-        least, most = values.min(), values.max()  # NaN if any is NaN
+        least, most = values.min(), values.max()  # nan propagates
         if not (np.isfinite(least) and np.isfinite(most)):
             raise InputError(f"{self.path}: {name} holds values that are not finite; write the file again without them")
         if least < low or most > high:

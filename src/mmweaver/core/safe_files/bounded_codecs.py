@@ -1,7 +1,7 @@
-"""Codecs of Zarr that refuse a chunk which would unpack to more, or to less, than its place in the array holds.
+"""Zarr codecs that refuse chunks that would not decompress to exactly their size in the array.
 
-Zarr's own take as much memory as the chunk itself asks for: 3 kB of Zstandard stand for 100 MB of zeros. Imported only
-where arrays are read, because zarr is slow to import. Reference: RFC 8878, section 3.1.1.1 (frame header); c-blosc,
+Zarr's own codecs allocate as much memory as the chunk claims: 3 kB of Zstandard can expand to 100 MB of zeros. Imported
+only when arrays are read, since zarr is slow to import. Reference: RFC 8878, section 3.1.1.1 (frame header); c-blosc,
 README_CHUNK_FORMAT.rst.
 """
 
@@ -18,7 +18,7 @@ MAX_TEXT_BYTES = 64 * 2**20
 
 
 class BoundedZstd(codecs.ZstdCodec):
-    """Zstandard whose frame has the size of its chunk."""
+    """Zstandard with a frame content size equal to the chunk size."""
 
     def _decode_sync(self, chunk_bytes: Any, chunk_spec: Any) -> Any:
         _check_size(_zstd_size(chunk_bytes.to_bytes()[:18]), chunk_spec)
@@ -26,7 +26,7 @@ class BoundedZstd(codecs.ZstdCodec):
 
 
 class BoundedBlosc(codecs.BloscCodec):
-    """Blosc whose buffer has the size of its chunk."""
+    """Blosc with a buffer size equal to the chunk size."""
 
     def _decode_sync(self, chunk_bytes: Any, chunk_spec: Any) -> Any:
         _check_size(int.from_bytes(chunk_bytes.to_bytes()[4:8], "little"), chunk_spec)
@@ -34,7 +34,7 @@ class BoundedBlosc(codecs.BloscCodec):
 
 
 class VLenUTF8Codec(codecs.VLenUTF8Codec):
-    """Texts whose count is that of their chunk. Zarr insists on the name."""
+    """Texts whose count equals that of the chunk. Zarr requires this class name."""
 
     def _decode_sync(self, chunk_bytes: Any, chunk_spec: Any) -> Any:
         if int.from_bytes(chunk_bytes.to_bytes()[:4], "little") != math.prod(chunk_spec.shape):
@@ -48,7 +48,14 @@ for _name, _codec in BOUNDED.items():
 
 
 def open_bounded(place: Path) -> Any:
-    """A Zarr array, read-only, whose chunks are unpacked by these codecs."""
+    """Opens a Zarr array read-only with bounded codecs.
+
+    Args:
+        place: Folder of the array.
+
+    Returns:
+        The zarr.Array.
+    """
     names = {f"codecs.{name}": f"{codec.__module__}.{codec.__qualname__}" for name, codec in BOUNDED.items()}
     with zarr.config.set(names):
         return zarr.open_array(place, mode="r", zarr_format=3)
@@ -63,7 +70,7 @@ def _check_size(size: int | None, chunk_spec: Any) -> None:
 
 
 def _zstd_size(head: bytes) -> int | None:
-    """Bytes that a Zstandard frame unpacks to, by its header; None where it does not say."""
+    """Content size of a Zstandard frame according to its header; None if it is not stated."""
     if len(head) < 6 or head[:4] != b"\x28\xb5\x2f\xfd":
         return None
     single, flag = head[4] >> 5 & 1, head[4] >> 6

@@ -1,4 +1,4 @@
-"""Opens regular files alone, and turns what libraries raise for damaged ones into the one line of an InputError."""
+"""Opening of regular files only, and conversion of library errors for damaged files to one-line InputErrors."""
 
 import contextlib
 import os
@@ -14,13 +14,31 @@ MEGABYTE = 2**20
 
 
 def check_exists(path: Path, what: str) -> None:
-    """Raises InputError where a path names nothing; `what` should be given in its place."""
+    """Checks that a path exists.
+
+    Args:
+        path: The path.
+        what: What to give instead, for the error message.
+
+    Raises:
+        InputError: If it does not exist.
+    """
     if not path.exists():
         raise InputError(f"{path} does not exist; give {what}")
 
 
 def check_regular(path: Path | str) -> int:
-    """The size of a regular file in bytes. Raises InputError for folders, FIFOs, devices, sockets and missing files."""
+    """Checks that a path is a regular file.
+
+    Args:
+        path: The path.
+
+    Returns:
+        Size in bytes.
+
+    Raises:
+        InputError: If it is missing, or a folder, FIFO, device or socket.
+    """
     try:
         found = Path(path).stat()
     except (OSError, ValueError) as error:
@@ -33,12 +51,22 @@ def check_regular(path: Path | str) -> int:
 
 
 def open_regular(path: Path | str) -> BufferedReader:
-    """A regular file, opened for reading bytes; never waits, as opening a FIFO would. Raises InputError otherwise."""
+    """Opens a regular file for reading bytes; never blocks, as opening a FIFO would.
+
+    Args:
+        path: The path.
+
+    Returns:
+        The open file.
+
+    Raises:
+        InputError: If it is not a regular file or cannot be opened.
+    """
     check_regular(path)
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
     try:
         handle = os.open(path, flags)
-        if stat.S_ISREG(os.fstat(handle).st_mode):  # it may have been replaced since it was checked
+        if stat.S_ISREG(os.fstat(handle).st_mode):  # may have been replaced since the check
             return os.fdopen(handle, "rb")
         os.close(handle)
     except OSError as error:
@@ -47,22 +75,22 @@ def open_regular(path: Path | str) -> BufferedReader:
 
 
 def read_bytes(path: Path | str, *, max_bytes: int) -> bytes:
-    """The whole of a regular file.
+    """Reads an entire regular file.
 
     Args:
         path: The file.
-        max_bytes: Largest size that is read.
+        max_bytes: Size limit in bytes.
 
     Returns:
-        Its bytes.
+        Its content.
 
     Raises:
-        InputError: for a larger file, and for anything that is no regular file.
+        InputError: If it is larger, or not a regular file.
     """
     pieces, held = [], 0
     with open_regular(path) as file:
         try:
-            while piece := file.read(MEGABYTE):  # a larger read would take the memory before it has the bytes
+            while piece := file.read(MEGABYTE):  # a larger read would allocate memory before the bytes arrive
                 pieces.append(piece)
                 held += len(piece)
                 if held > max_bytes:
@@ -74,17 +102,17 @@ def read_bytes(path: Path | str, *, max_bytes: int) -> bytes:
 
 @contextlib.contextmanager
 def foreign_errors(path: Path | str, what: str) -> Iterator[None]:
-    """Turns whatever a library raises while it decodes a file into an InputError "PATH is `what`".
+    """Context that converts any exception of a decoding library to an InputError "PATH is `what`".
 
-    Only calls of libraries belong inside.
+    Only library calls belong inside.
 
     Args:
-        path: The file, or the words that name it.
-        what: What is wrong and what to do, with "{reason}" where the library's own words go, for example "no .npy array
-            ({reason}); save it with numpy.save".
+        path: The file, or words that name it.
+        what: What is wrong and what to do, with "{reason}" as placeholder for the library's message, for example "no
+            .npy array ({reason}); save it with numpy.save".
 
     Raises:
-        InputError: in place of any other exception.
+        InputError: In place of any other exception.
     """
     try:
         with warnings.catch_warnings():
@@ -103,13 +131,13 @@ def foreign_errors(path: Path | str, what: str) -> Iterator[None]:
 
 
 def cannot_read(path: Path | str, error: Exception) -> str:
-    """The sentence for a file that the system does not open."""
+    """Message for a file that the operating system does not open."""
     reason = error.strerror if isinstance(error, OSError) and error.strerror else error
     return f"cannot read {path}: {reason}"
 
 
 def _reason(error: Exception) -> str:
-    """What a library says, shortened; numpy and torch advise to allow pickles, which is never right."""
+    """Message of a library, shortened; hides the advice of numpy and torch to allow pickles."""
     text = one_line(str(error) or type(error).__name__, 160)
     if "max_header_size" in text:
         return "its header is too large"

@@ -1,4 +1,4 @@
-"""Arrays of .npy, .npz and raw files: what a header says is checked against the file before memory is taken for it.
+"""Arrays from .npy, .npz and raw files; sizes in headers are checked against the file before memory is allocated.
 
 Pickled objects are never loaded. Reference: numpy.lib.format; PKWARE APPNOTE.TXT for zip.
 """
@@ -18,8 +18,8 @@ from mmweaver.core.safe_files.regular_files import MEGABYTE, check_regular, fore
 
 MAX_HEADER_BYTES = 10_000
 UNICODE_END = 0x110000
-KINDS = "biufcUS"  # what mmWeaver reads: no objects, dates or records
-# A compressed archive may grow to this, or to this many times its own size, whichever is more.
+KINDS = "biufcUS"  # dtype kinds that are read: no objects, dates or records
+# A compressed archive may expand to this size, or to this multiple of its own size, whichever is larger.
 INFLATED_BYTES, INFLATED_RATIO = 64 * MEGABYTE, 100
 NO_NPY = "no plain .npy array of numbers ({reason}); save it with numpy.save"
 NO_NPZ = "no plain .npz archive, or it is damaged ({reason}); write it again with numpy.savez"
@@ -28,17 +28,17 @@ _HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.r
 
 
 def read_npy(path: Path | str, *, mapped: bool = False) -> np.ndarray:
-    """The array of a .npy file.
+    """Reads a .npy file.
 
     Args:
         path: The file.
-        mapped: Whether it is left on the disk, read-only.
+        mapped: Whether the array is memory-mapped, read-only. Default: False.
 
     Returns:
-        The array: numbers, truth values or texts.
+        Array of numbers, booleans or texts.
 
     Raises:
-        InputError: for anything else, pickled objects and records included.
+        InputError: If the file is anything else, including pickled objects and records.
     """
     with open_regular(path) as file, foreign_errors(path, NO_NPY):
         if zipfile.is_zipfile(file):
@@ -55,7 +55,7 @@ def read_npy(path: Path | str, *, mapped: bool = False) -> np.ndarray:
 
 
 class NpzArrays(Mapping[str, np.ndarray]):
-    """The arrays of an .npz archive, and checks of them (`array_checks`)."""
+    """Arrays of an .npz archive by name, with checks (`array_checks`)."""
 
     def __init__(self, path: Path | str, arrays: dict[str, np.ndarray]):
         self.path, self._arrays, self._checks = path, arrays, ArrayChecks(path)
@@ -70,17 +70,40 @@ class NpzArrays(Mapping[str, np.ndarray]):
         return len(self._arrays)
 
     def take(self, name: str) -> np.ndarray:
-        """An array as it is. Raises InputError where there is none of that name."""
+        """Returns an array unchecked.
+
+        Args:
+            name: Name of the array.
+
+        Raises:
+            InputError: If there is none of that name.
+        """
         if name not in self._arrays:
             raise InputError(f"{self.path} holds no {name!r}; it has {', '.join(self._arrays) or 'nothing'}")
         return self._arrays[name]
 
     def numbers(self, name: str, shape: tuple[int | str, ...] | None = None, **limits: Any) -> np.ndarray:
-        """A checked array of numbers; see `ArrayChecks.numbers`."""
+        """Returns a checked array of numbers.
+
+        Args:
+            name: Name of the array.
+            shape: Expected shape. Default: any.
+            **limits: Further limits of `ArrayChecks.numbers`.
+
+        Raises:
+            InputError: If the array is missing or fails the checks.
+        """
         return self._checks.numbers(name, self.take(name), shape, **limits)
 
     def texts(self, name: str) -> tuple[str, ...]:
-        """A list of texts. Raises InputError where the array holds anything else."""
+        """Returns a list of texts.
+
+        Args:
+            name: Name of the array.
+
+        Raises:
+            InputError: If the array is missing or contains anything else.
+        """
         values = self.take(name)
         if values.dtype.kind != "U" or values.ndim != 1:
             raise InputError(f"{self.path}: {name} is {values.dtype} of shape {values.shape}; texts are needed")
@@ -91,21 +114,20 @@ class NpzArrays(Mapping[str, np.ndarray]):
 def read_npz(
     path: Path | str, only: Iterable[str] | None = None, *, skip_unreadable: bool = False, mapped: Iterable[str] = ()
 ) -> NpzArrays:
-    """The arrays of an .npz archive.
+    """Reads an .npz archive.
 
     Args:
         path: The file.
-        only: Names of arrays that are read. Default: all.
-        skip_unreadable: Whether arrays of Python objects and other types that are not read are omitted, instead of
-            refusing the archive.
-        mapped: Names of arrays that are left on the disk, read-only, where they are not compressed, once their CRC-32
-            has been checked.
+        only: Names of the arrays to read. Default: all.
+        skip_unreadable: Whether arrays of unsupported dtypes, such as Python objects, are skipped instead of refusing
+            the archive. Default: False.
+        mapped: Names of arrays to memory-map read-only if they are uncompressed, after a check of their CRC-32.
 
     Returns:
-        The arrays by name, with checks of them.
+        Arrays by name.
 
     Raises:
-        InputError: where the file is no such archive, is damaged, or would grow out of proportion.
+        InputError: If the file is not such an archive, is damaged, or would expand out of proportion.
     """
     held = check_regular(path)
     found: dict[str, np.ndarray] = {}
@@ -131,7 +153,7 @@ def read_npz(
 
 
 def is_sound_zip(path: Path | str) -> bool:
-    """Whether a file is a zip archive, such as a checkpoint of torch, whose entries all have their CRC-32."""
+    """Whether a file is a zip archive, such as a torch checkpoint, all of whose entries match their CRC-32."""
     try:
         with open_regular(path) as file, foreign_errors(path, NO_NPZ), zipfile.ZipFile(file) as archive:
             return archive.testzip() is None
@@ -140,19 +162,19 @@ def is_sound_zip(path: Path | str) -> bool:
 
 
 def read_words(path: Path | str, dtype: str, *, count: int, first: int = 0) -> np.ndarray:
-    """Numbers of a raw file.
+    """Reads numbers from a headerless file.
 
     Args:
         path: The file.
-        dtype: Their type, such as "<i2".
-        count: How many are read.
-        first: Number of the first.
+        dtype: Type of a number, such as "<i2".
+        count: Number of values.
+        first: Index of the first value. Default: 0.
 
     Returns:
         The numbers, (count,).
 
     Raises:
-        InputError: where the file has fewer.
+        InputError: If the file is too short.
     """
     size = np.dtype(dtype).itemsize
     needed = (first + count) * size
@@ -175,7 +197,7 @@ def _mapped_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, file: Any) -
     if not needed:
         return np.empty(shape, dtype)
     file.seek(entry.header_offset + ZIP_LENGTHS)
-    front = ZIP_LOCAL + sum(struct.unpack("<HH", file.read(4)))  # name and extra field may differ from the index
+    front = ZIP_LOCAL + sum(struct.unpack("<HH", file.read(4)))  # may differ from the central directory
     start = entry.header_offset + front + header_bytes
     return np.memmap(file, dtype=dtype, mode="r", offset=start, shape=shape, order=order)
 
@@ -197,14 +219,14 @@ def _entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, skip_unreadable: bo
 
 
 class _UnreadTypeError(ValueError):
-    """An array of a type that is not read."""
+    """An array of an unsupported dtype."""
 
 
 def _header(file: Any) -> tuple[np.dtype, tuple[int, ...], Any]:
-    """Type, shape and order ("C" or "F") of a .npy stream. Raises ValueError for anything else."""
+    """Dtype, shape and order ("C" or "F") of a .npy stream. Raises ValueError if it is malformed or unsupported."""
     version = np.lib.format.read_magic(file)
     if version not in _HEADERS:
-        raise _UnreadTypeError("it holds records, not plain numbers")  # of which alone version 3 is written
+        raise _UnreadTypeError("it holds records, not plain numbers")  # the only ones written as version 3
     shape, is_fortran, dtype = _HEADERS[version](file, MAX_HEADER_BYTES)
     if len(shape) > 16 or not all(type(length) is int and 0 <= length < 2**48 for length in shape):
         raise ValueError("its header has an impossible shape")
@@ -216,7 +238,7 @@ def _header(file: Any) -> tuple[np.dtype, tuple[int, ...], Any]:
 
 
 def _filled(file: Any, dtype: np.dtype, shape: tuple[int, ...], order: Any) -> np.ndarray:
-    """An array read from a stream that holds at least its bytes."""
+    """Reads an array from a stream in bounded pieces."""
     array = np.empty(math.prod(shape), dtype)
     raw: Any = array.view(np.uint8) if array.size else b""
     view = memoryview(raw)

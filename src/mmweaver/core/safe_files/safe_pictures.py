@@ -1,6 +1,6 @@
-"""Pictures by the decoders of a few common formats; every other decoder of Pillow stays out of reach.
+"""Pictures in a few common formats; all other decoders of Pillow stay unreachable.
 
-Pillow would hand an EPS to Ghostscript whatever the file is called, and rare formats have rare bugs.
+Pillow would pass an EPS to Ghostscript whatever the file name, and decoders of rare formats are poorly tested.
 """
 
 import contextlib
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from PIL import Image
 
 MAX_PIXELS = 50_000_000
-FORMATS = ("PNG", "JPEG", "TIFF", "WEBP", "BMP", "PPM")  # JPEG includes the MPO of many phones
+FORMATS = ("PNG", "JPEG", "TIFF", "WEBP", "BMP", "PPM")  # JPEG includes MPO, which many phones write
 _MIN_SIDE = 32
 ORIENTATION = 0x0112
 _EXIF, _FOCAL_35MM = 0x8769, 0xA405
 _HEIF_BRANDS = (b"heic", b"heix", b"heim", b"heis", b"mif1", b"msf1")
-# EXIF's orientation: what turns the stored picture upright, as Pillow numbers it (Image.Transpose)
+# EXIF orientation: operation that turns the stored picture upright, as numbered in Pillow's Image.Transpose
 _TURN = {2: 0, 3: 3, 4: 1, 5: 5, 6: 4, 7: 6, 8: 2}
 
 
@@ -37,14 +37,21 @@ class Picture:
 
     image: "Image.Image"
     stored_size: tuple[int, int]  # (width, height) in the file
-    orientation: int  # EXIF's, 1 to 8; 1 = as stored
-    focal_35mm: float | None = None  # EXIF's focal length in millimetres on 35 mm film; None where it is not given
+    orientation: int  # EXIF orientation, 1 to 8; 1 = as stored
+    focal_35mm: float | None = None  # 35 mm equivalent focal length from EXIF, in millimetres
 
 
 def open_picture(path: Path) -> Picture:
-    """Opens and decodes a picture, and turns it upright as its EXIF tag says.
+    """Opens and decodes a picture, and turns it upright according to its EXIF orientation.
 
-    Raises InputError where it cannot be read, is too small or too large.
+    Args:
+        path: The file.
+
+    Returns:
+        The picture.
+
+    Raises:
+        InputError: If it cannot be decoded, is too small or too large.
     """
     from PIL import Image, UnidentifiedImageError
 
@@ -64,7 +71,7 @@ def open_picture(path: Path) -> Picture:
             raise InputError(_too_large(path))
         if min(size) < _MIN_SIDE:
             raise InputError(f"{path} has only {size[0]} x {size[1]} pixels; give a larger picture")
-        if image.format == "TIFF":  # Pillow turns these upright itself, and then forgets the tag
+        if image.format == "TIFF":  # Pillow turns these upright itself and drops the tag
             orientation = image.getexif().get(ORIENTATION, 1)
             with _no_messages():
                 image.load()
@@ -73,7 +80,7 @@ def open_picture(path: Path) -> Picture:
             orientation = image.getexif().get(ORIENTATION, 1)
             if orientation in range(2, 9):
                 image = image.transpose(Image.Transpose(_TURN[orientation]))
-            elif image.format == "HEIF":  # it was turned as it was decoded, and its tag was set to say so
+            elif image.format == "HEIF":  # already upright after decoding, with a reset tag
                 orientation = image.info.get("original_orientation") or 1
                 size = size[::-1] if orientation in range(5, 9) else size
         focal_35mm = _focal_35mm(image.getexif())
@@ -82,7 +89,14 @@ def open_picture(path: Path) -> Picture:
 
 
 def turned_upright(stored: np.ndarray, orientation: int) -> np.ndarray:
-    """Pixels (row, column) that lay in their file as EXIF's `orientation` (1 to 8) says, upright.
+    """Turns stored pixels upright.
+
+    Args:
+        stored: Pixels as stored, (row, column, ...).
+        orientation: EXIF orientation, 1 to 8.
+
+    Returns:
+        Upright pixels.
 
     >>> turned_upright(np.array([[1, 2, 3]]), 6).tolist()
     [[1], [2], [3]]
@@ -93,7 +107,7 @@ def turned_upright(stored: np.ndarray, orientation: int) -> np.ndarray:
 
 
 def _heif(path: Path, file: BufferedReader) -> tuple[str, ...]:
-    """The name of the decoder of HEIC, where the file is one. Raises InputError where it is not installed."""
+    """Name of the HEIC decoder if the file is HEIC. Raises InputError if it is not installed."""
     start = file.read(12)
     file.seek(0)
     if start[4:8] != b"ftyp" or start[8:12] not in _HEIF_BRANDS:
@@ -106,7 +120,7 @@ def _heif(path: Path, file: BufferedReader) -> tuple[str, ...]:
 
 
 def _focal_35mm(exif: "Image.Exif") -> float | None:
-    """The focal length on 35 mm film, where it is given and plausible for a lens."""
+    """35 mm equivalent focal length, if present and plausible."""
     value: Any = exif.get_ifd(_EXIF).get(_FOCAL_35MM)
     try:
         focal_mm = float(value)
@@ -116,7 +130,17 @@ def _focal_35mm(exif: "Image.Exif") -> float | None:
 
 
 def read_animation(path: Path) -> list[np.ndarray]:
-    """The pictures of a .gif, (height, width, 3) uint8 each. Raises InputError where it is none or too large."""
+    """Reads a .gif.
+
+    Args:
+        path: The file.
+
+    Returns:
+        One picture per frame, (height, width, 3) uint8.
+
+    Raises:
+        InputError: If it is not a .gif, is damaged or too large.
+    """
     from PIL import Image, ImageSequence
 
     with open_regular(path) as file, foreign_errors(path, "damaged or no .gif ({reason}); make it again"):
@@ -140,7 +164,7 @@ def _too_large(path: Path) -> str:
 
 @contextlib.contextmanager
 def _quiet_pillow() -> Iterator[None]:
-    """Silences what Pillow logs about a damaged file: without handlers, logging writes errors to stderr."""
+    """Silences Pillow's log about damaged files: without handlers, logging writes errors to stderr."""
     log = logging.getLogger("PIL")
     kept = log.level
     log.setLevel(logging.CRITICAL + 1)
@@ -152,7 +176,7 @@ def _quiet_pillow() -> Iterator[None]:
 
 @contextlib.contextmanager
 def _no_messages() -> Iterator[None]:
-    """Silences what libtiff itself writes to the process's stderr about a damaged file."""
+    """Silences messages of libtiff about damaged files, which go to stderr directly."""
     try:
         kept = os.dup(2)
     except OSError:  # there is no stderr

@@ -1,4 +1,4 @@
-"""Tensors from safetensors files and from PyTorch checkpoints; no pickle is run, and every value is finite."""
+"""Tensors from safetensors files and PyTorch checkpoints; no pickle is executed."""
 
 import math
 import struct
@@ -14,24 +14,24 @@ if TYPE_CHECKING:
     import torch
 
 MAX_HEADER_BYTES = 16 * 2**20
-PICKLE = (b"\x80", b"PK")  # how a pickle and a checkpoint of torch.save begin
+PICKLE = (b"\x80", b"PK")  # first bytes of a pickle and of a torch.save checkpoint
 NO_TENSORS = "damaged or no safetensors file ({reason}); fetch or write it again"
 
 
 def read_tensors(
     path: Path | str, *, only: Iterable[str] | None = None
 ) -> tuple[dict[str, "torch.Tensor"], dict[str, str]]:
-    """The tensors of a safetensors file.
+    """Reads a safetensors file.
 
     Args:
         path: The file.
-        only: Names of tensors that are read. Default: all.
+        only: Names of the tensors to read. Default: all.
 
     Returns:
-        The tensors by name, and the metadata.
+        Tensors by name, and the metadata.
 
     Raises:
-        InputError: where it is another file or damaged, lacks one of `only`, or has NaN or infinity.
+        InputError: If the file is damaged, lacks one of `only`, or contains nan or infinity.
     """
     from safetensors import safe_open
 
@@ -47,7 +47,17 @@ def read_tensors(
 
 
 def read_tensor_metadata(path: Path | str) -> dict[str, str]:
-    """The metadata of a safetensors file, without its tensors. Raises InputError where it is no such file."""
+    """Reads the metadata of a safetensors file without its tensors.
+
+    Args:
+        path: The file.
+
+    Returns:
+        Metadata by key.
+
+    Raises:
+        InputError: If it is not a safetensors file.
+    """
     header = check_header(path)
     metadata = header.get("__metadata__", {})
     if not isinstance(metadata, dict) or not all(isinstance(value, str) for value in metadata.values()):
@@ -56,13 +66,23 @@ def read_tensor_metadata(path: Path | str) -> dict[str, str]:
 
 
 def check_header(path: Path | str) -> dict[str, Any]:
-    """The header of a safetensors file, after it was checked against the size of the file."""
+    """Reads the header of a safetensors file and checks it against the file size.
+
+    Args:
+        path: The file.
+
+    Returns:
+        Decoded JSON header.
+
+    Raises:
+        InputError: If it is not a safetensors file; the message points out pickles.
+    """
     size = check_regular(path)
     with open_regular(path) as file, foreign_errors(path, NO_TENSORS):
         start = file.read(8)
         length = struct.unpack("<Q", start)[0] if len(start) == 8 else 0
         if not 2 <= length <= min(size - 8, MAX_HEADER_BYTES):
-            # only now: the length of one header in 32 begins as a pickle does
+            # only checked now, since one valid header length in 32 begins like a pickle
             if start.startswith(PICKLE):
                 raise InputError(
                     f"{path} holds pickled objects, which can run any program; mmweaver reads only safetensors"
@@ -76,7 +96,15 @@ def check_header(path: Path | str) -> dict[str, Any]:
 
 
 def check_finite(path: Path | str, tensors: dict[str, "torch.Tensor"]) -> None:
-    """Raises InputError where a tensor holds NaN or infinity, as after a diverged training."""
+    """Checks that all tensors are finite, which they are not after a diverged training.
+
+    Args:
+        path: The file, for error messages.
+        tensors: Tensors by name.
+
+    Raises:
+        InputError: If one contains nan or infinity.
+    """
     import torch
 
     for name, tensor in tensors.items():
@@ -85,17 +113,17 @@ def check_finite(path: Path | str, tensors: dict[str, "torch.Tensor"]) -> None:
 
 
 def read_checkpoint(path: Path | str, *, what: str) -> Any:
-    """The content of a checkpoint of torch.save, on the CPU; code in it is refused.
+    """Loads a torch.save checkpoint on the CPU; refuses code in it.
 
     Args:
         path: The file.
-        what: What is wrong with it and the remedy, as in `foreign_errors`.
+        what: What is wrong and the remedy, as in `foreign_errors`.
 
     Returns:
         Tensors and plain values.
 
     Raises:
-        InputError: for anything else.
+        InputError: If the file contains anything else or is damaged.
     """
     import torch
 
@@ -107,7 +135,7 @@ def read_checkpoint(path: Path | str, *, what: str) -> Any:
 
 
 def _check_size(content: Any, size: int) -> None:
-    """Raises ValueError where storages are shared so that a small file stands for far more numbers."""
+    """Raises ValueError if shared storages let a small file expand to far more numbers."""
     import torch
 
     total, level = 0, [content]

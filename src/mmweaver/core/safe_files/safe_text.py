@@ -1,4 +1,4 @@
-"""Text, JSON and TOML from files: bounded in size and depth, all numbers finite."""
+"""Text, JSON and TOML files with bounded size and depth and finite numbers only."""
 
 import json
 import math
@@ -10,23 +10,23 @@ from mmweaver.core.safe_files.regular_files import MEGABYTE, foreign_errors, rea
 
 MAX_TEXT_BYTES = 64 * MEGABYTE
 MAX_JSON_BYTES = 16 * MEGABYTE
-MAX_DEPTH = 50  # of lists and objects in each other; what mmWeaver reads has fewer than 10
-MAX_DIGITS = 64  # of a whole number; a float holds every such number
+MAX_DEPTH = 50  # nesting of lists and objects; mmWeaver's own files stay below 10
+MAX_DIGITS = 64  # of an integer; a float can represent its magnitude
 
 
 def read_text(path: Path | str, *, max_bytes: int = MAX_TEXT_BYTES, errors: str = "strict") -> str:
-    """A UTF-8 text, without a byte order mark.
+    """Reads a UTF-8 text and drops a byte order mark.
 
     Args:
         path: The file.
-        max_bytes: Largest size that is read.
-        errors: "replace" accepts bytes that are no UTF-8, in comments for example.
+        max_bytes: Size limit in bytes. Default: 64 MB.
+        errors: "strict", or "replace" to accept invalid bytes, for example in comments.
 
     Returns:
         The text.
 
     Raises:
-        InputError: where it is no UTF-8 text or larger.
+        InputError: If it is not UTF-8, or larger.
     """
     try:
         return read_bytes(path, max_bytes=max_bytes).decode("utf-8-sig", errors=errors)
@@ -35,23 +35,34 @@ def read_text(path: Path | str, *, max_bytes: int = MAX_TEXT_BYTES, errors: str 
 
 
 def read_json(path: Path | str, *, max_bytes: int = MAX_JSON_BYTES) -> Any:
-    """The content of a JSON file, as `parse_json` gives it."""
+    """Reads a JSON file.
+
+    Args:
+        path: The file.
+        max_bytes: Size limit in bytes. Default: 16 MB.
+
+    Returns:
+        Decoded JSON.
+
+    Raises:
+        InputError: If it is larger, or `parse_json` rejects it.
+    """
     return parse_json(read_text(path, max_bytes=max_bytes), str(path))
 
 
 def parse_json(text: str | bytes, place: str) -> Any:
-    """The content of JSON text.
+    """Parses JSON text.
 
     Args:
-        text: The JSON.
-        place: What it is called in errors.
+        text: JSON.
+        place: Name of the source for error messages.
 
     Returns:
         Lists, dicts, texts and numbers.
 
     Raises:
-        InputError: for what is no JSON, for NaN, infinity, numbers too long for a float, lists and objects nested too
-            deeply, and text that cannot be written again.
+        InputError: If it is not valid JSON, or contains nan, infinity, excessively long integers, nesting that is too
+            deep, or unpaired surrogates.
     """
     with foreign_errors(place, "no JSON ({reason}); write it again"):
         text = text.decode("utf-8-sig") if isinstance(text, bytes) else text
@@ -61,7 +72,18 @@ def parse_json(text: str | bytes, place: str) -> Any:
 
 
 def read_toml(path: Path | str, *, max_bytes: int = MEGABYTE) -> dict[str, Any]:
-    """The content of a TOML file, with the limits of `parse_json`. Raises InputError for anything else."""
+    """Reads a TOML file with the limits of `parse_json`.
+
+    Args:
+        path: The file.
+        max_bytes: Size limit in bytes. Default: 1 MB.
+
+    Returns:
+        Decoded TOML.
+
+    Raises:
+        InputError: If it is not valid TOML, or larger.
+    """
     import tomllib
 
     text = read_text(path, max_bytes=max_bytes)
@@ -72,7 +94,7 @@ def read_toml(path: Path | str, *, max_bytes: int = MEGABYTE) -> dict[str, Any]:
 
 
 def _check_content(content: Any) -> None:
-    """Raises ValueError where lists and objects are nested too deeply, or a number or text cannot be written again."""
+    """Raises ValueError for nesting that is too deep, and for numbers or texts that cannot be serialised again."""
     level, depth = [content], 0
     while level:
         if depth > MAX_DEPTH:
@@ -85,7 +107,7 @@ def _check_content(content: Any) -> None:
             elif isinstance(value, list):
                 inner += value
             elif isinstance(value, str):
-                value.encode("utf-8")  # half a surrogate pair is no text
+                value.encode("utf-8")  # fails for unpaired surrogates
             elif isinstance(value, int) and value.bit_length() > 256:
                 raise ValueError("a whole number is too large")
         level, depth = inner, depth + 1

@@ -1,8 +1,7 @@
-"""Zarr (v3) groups and arrays on the disk: what metadata promises is checked against the chunk files before memory is
-taken for it, and a chunk that would grow beyond its array is refused (`bounded_codecs`).
+"""Zarr (v3) groups and arrays on disk, checked against their chunk files before memory is allocated.
 
-Read are arrays as mmWeaver writes them: numbers or texts, Zstandard or Blosc, CRC-32C, shards. Reference: Zarr v3 core
-specification.
+Chunks that would expand beyond their size in the array are refused (`bounded_codecs`). Supported are arrays as mmWeaver
+writes them: numbers or texts, Zstandard or Blosc, CRC-32C, shards. Reference: Zarr v3 core specification.
 """
 
 import itertools
@@ -22,11 +21,11 @@ from mmweaver.core.safe_files.safe_text import read_json
 
 METADATA = "zarr.json"
 DAMAGED = "damaged ({reason}); make it again"
-# The arrays of a group may grow to this, or to this many times the size of their files, whichever is more.
+# The arrays of a group may expand to this size, or to this multiple of their files, whichever is larger.
 INFLATED_BYTES, INFLATED_RATIO = 64 * MEGABYTE, 100
 MAX_CHUNKS = 1_000_000
-ABSENT_CHUNKS = 1000  # of nothing but zeros, which Zarr need not write
-BYTES_OF_INDEX = 16  # of each chunk in a shard
+ABSENT_CHUNKS = 1000  # Zarr may omit chunks of zeros
+BYTES_OF_INDEX = 16  # per chunk of a shard
 MAX_AXES = 16
 KEYS = {"name": "default", "configuration": {"separator": "/"}}
 TEXT = np.dtype("O")
@@ -35,7 +34,7 @@ _PACKED = [[], ["zstd"], ["blosc"], ["crc32c"], ["zstd", "crc32c"], ["blosc", "c
 
 @dataclass(frozen=True, kw_only=True)
 class ArrayPromise:
-    """What the metadata of an array promises: shape, type (`TEXT` for texts), and how many bytes its files hold."""
+    """Shape and dtype (`TEXT` for texts) according to the metadata, and the size of the array's files in bytes."""
 
     shape: tuple[int, ...]
     dtype: np.dtype
@@ -43,14 +42,15 @@ class ArrayPromise:
 
     @property
     def promised(self) -> int:
-        """Bytes of all its elements in memory."""
+        """Size of all elements in memory, bytes."""
         return math.prod(self.shape) * max(self.dtype.itemsize, 1)
 
 
 class ZarrFolder:
-    """A group: its attributes and arrays, all of which are checked when it is opened and as they are read.
+    """A Zarr group; its arrays are checked when it is opened and again as they are read.
 
-    Raises InputError where it is no group, and where an array is damaged or promises far more than its files hold.
+    Raises:
+        InputError: If it is not a group, or an array is damaged or claims far more than its files contain.
     """
 
     def __init__(self, path: Path):
@@ -75,51 +75,99 @@ class ZarrFolder:
         return name in self._promises
 
     def has_group(self, name: str) -> bool:
-        """Whether there is a group of that name inside."""
+        """Whether the group contains a subgroup of that name."""
         return name not in self and (self.path / name / METADATA).is_file()
 
     def group(self, name: str) -> "ZarrFolder":
-        """A group inside this one."""
+        """Opens a subgroup."""
         return ZarrFolder(self.path / name)
 
     def attr(self, name: str, kind: type) -> Any:
-        """An attribute of a JSON type. Raises InputError where it is missing or of another type."""
+        """Returns an attribute.
+
+        Args:
+            name: Name of the attribute.
+            kind: Expected Python type, such as int or list.
+
+        Raises:
+            InputError: If it is missing or of another type.
+        """
         value = self.attrs.get(name)
         if type(value) is not kind:
             raise InputError(f"{self.path} is damaged: its {name} is {value!r}; make it again")
         return value
 
     def words(self, name: str) -> tuple[str, ...]:
-        """An attribute that is a list of texts. Raises InputError for anything else."""
+        """Returns an attribute that is a list of texts.
+
+        Args:
+            name: Name of the attribute.
+
+        Raises:
+            InputError: If it is anything else.
+        """
         values = self.attr(name, list)
         if not all(isinstance(value, str) for value in values):
             raise InputError(f"{self.path} is damaged: its {name} is no list of texts; make it again")
         return tuple(values)
 
     def promise(self, name: str) -> ArrayPromise:
-        """What an array's metadata says; the array is not read. Raises InputError where there is none."""
+        """Returns shape and dtype of an array without reading it.
+
+        Args:
+            name: Name of the array.
+
+        Raises:
+            InputError: If there is none of that name.
+        """
         if name not in self._promises:
             raise InputError(f"{self.path} is damaged: it has no {name}; make it again")
         return self._promises[name]
 
     def check_shape(self, name: str, found: tuple[int, ...], wanted: tuple[int | str, ...]) -> None:
-        """Holds the shape of something that belongs to the arrays against theirs; see `ArrayChecks.shape`."""
+        """Checks the shape of related data against the named axes of the arrays; see `ArrayChecks.shape`."""
         self._checks.shape(name, found, wanted)
 
     def rows_a_file(self, name: str) -> int:
-        """How many rows of an array, along its first axis, one chunk file holds."""
+        """Number of rows along the first axis that one chunk file contains.
+
+        Args:
+            name: Name of the array.
+
+        Raises:
+            InputError: If there is none of that name.
+        """
         self.promise(name)
         array = self._array(name)
         return int((array.shards or array.chunks)[0])
 
     def numbers(self, name: str, shape: tuple[int | str, ...], **limits: Any) -> np.ndarray:
-        """An array whose metadata says `shape`, read and then checked by `ArrayChecks.numbers`."""
+        """Reads an array of numbers.
+
+        Args:
+            name: Name of the array.
+            shape: Expected shape, as in `ArrayChecks.numbers`.
+            **limits: Further limits of `ArrayChecks.numbers`.
+
+        Raises:
+            InputError: If the array is missing, damaged or fails the checks.
+        """
         found = self.promise(name)
         self._checks.shape(name, found.shape, shape)
         return self._checks.numbers(name, self._read(name, ...), shape, **limits)
 
     def row(self, name: str, index: int, shape: tuple[int | str, ...], **limits: Any) -> np.ndarray:
-        """One element of an array along its first axis, of `shape`, checked as `numbers` checks."""
+        """Reads one element along the first axis of an array.
+
+        Args:
+            name: Name of the array.
+            index: Index of the element.
+            shape: Expected shape of the element.
+            **limits: Further limits of `ArrayChecks.numbers`.
+
+        Raises:
+            InputError: If the element is missing, damaged or fails the checks.
+        """
         found = self.promise(name)
         if not 0 <= index < (found.shape or (0,))[0]:
             raise InputError(f"{self.path}: {name} has no element {index}; make it again")
@@ -127,7 +175,15 @@ class ZarrFolder:
         return self._checks.numbers(name, self._read(name, index), shape, **limits)
 
     def texts(self, name: str, axis: str) -> np.ndarray:
-        """A list of texts, whose length is that of the other arrays along `axis`."""
+        """Reads a list of texts.
+
+        Args:
+            name: Name of the array.
+            axis: Name of its axis, which must match the length in the other arrays.
+
+        Raises:
+            InputError: If the array is missing, damaged or contains anything else.
+        """
         found = self.promise(name)
         self._checks.shape(name, found.shape, (axis,))
         if found.dtype != TEXT:
@@ -140,7 +196,7 @@ class ZarrFolder:
             return np.asarray(array[rows])
 
     def _array(self, name: str) -> Any:
-        """Opened once: what was checked is what is read."""
+        """The array, opened once so that what was checked is what is read."""
         if name not in self._opened:
             from mmweaver.core.safe_files.bounded_codecs import open_bounded
 
@@ -153,7 +209,17 @@ class ZarrFolder:
 
 
 def open_zarr(folder: Path | str) -> ZarrFolder:
-    """A Zarr group. Raises InputError where the folder is none, is damaged, or Zarr is not installed."""
+    """Opens a Zarr group.
+
+    Args:
+        folder: The folder.
+
+    Returns:
+        The group.
+
+    Raises:
+        InputError: If the folder is not a Zarr group, is damaged, or zarr is not installed.
+    """
     need("dataset", "a data set", "zarr")
     return ZarrFolder(Path(folder))
 
@@ -166,7 +232,7 @@ def _metadata(folder: Path) -> dict[str, Any]:
 
 
 def _promise(place: Path, metadata: dict[str, Any]) -> ArrayPromise:
-    """What an array promises, once its chunks are possible and those that are there are regular files."""
+    """Checks that the chunk layout is possible and that existing chunk files are regular files."""
     try:
         shape, chunk = _lengths(metadata["shape"]), _lengths(metadata["chunk_grid"]["configuration"]["chunk_shape"])
         is_text = metadata["data_type"] == "string"
@@ -190,7 +256,7 @@ def _promise(place: Path, metadata: dict[str, Any]) -> ArrayPromise:
 
 
 def _held(place: Path, counts: list[int]) -> int:
-    """Bytes of the chunk files, which are regular files. Raises InputError where many are missing."""
+    """Total size of the chunk files in bytes. Raises InputError if many are missing."""
     if math.prod(counts) > MAX_CHUNKS:
         raise InputError(f"{place} says {math.prod(counts)} chunks, more than {MAX_CHUNKS}; make it again")
     held = absent = 0
@@ -212,7 +278,7 @@ def _lengths(values: Any) -> tuple[int, ...]:
 
 
 def _inner_chunk(codecs: list[dict[str, Any]], chunk: tuple[int, ...], is_text: bool) -> tuple[int, ...]:
-    """The shape of what is packed in one piece. Raises ValueError for codecs that mmWeaver does not write."""
+    """Shape of the unit of compression. Raises ValueError for codecs that mmWeaver does not write."""
     first, *packing = (codec["name"] for codec in codecs)
     if first == "sharding_indexed" and not packing:
         shards = codecs[0]["configuration"]
@@ -228,7 +294,7 @@ def _inner_chunk(codecs: list[dict[str, Any]], chunk: tuple[int, ...], is_text: 
 
 
 def _check_chunks(whole: tuple[int, ...], chunk: tuple[int, ...]) -> None:
-    """Raises ValueError where chunks are empty, or larger than what they are parts of."""
+    """Raises ValueError for chunks that are empty or larger than the array or shard."""
     if len(whole) != len(chunk) or any(
         not 1 <= step <= max(length, 1) for length, step in zip(whole, chunk, strict=True)
     ):

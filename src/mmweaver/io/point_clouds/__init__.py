@@ -1,1 +1,1 @@
-"""Point clouds as boards and public data sets store them."""
+"""Point clouds as stored by boards and public data sets."""

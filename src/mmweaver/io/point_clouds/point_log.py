@@ -1,4 +1,4 @@
-"""The record of a logged point cloud, and the formats that hold one: each is one function, declared by a decorator.
+"""Record of a logged point cloud, and the registry of formats: one decorated reader function per format.
 
 @point_format("csv", "CSV with Frame, X, Y, Z, Doppler", lambda path, head: path.suffix.lower() == ".csv")
 def read_csv_points(path: Path) -> LoggedCloud: ...
@@ -18,9 +18,9 @@ MISSING = float("nan")
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class LoggedCloud(PointCloud):
-    """A PointCloud that a board or a data set stored: `intensity` in its own unit, nan where it has none.
+    """A PointCloud stored by a board or a data set, with `intensity` in its own unit (nan if missing).
 
-    x to the right, y away from the radar, z up; `frame` counts from 0 in the order of the file.
+    x to the right, y away from the radar, z up; `frame` counts from 0 in file order.
     """
 
     intensity: PerPoint
@@ -31,10 +31,16 @@ Reader = Callable[[Path], LoggedCloud]
 
 @dataclass(frozen=True)
 class PointFormat:
-    """A format of point clouds."""
+    """A format of point clouds.
 
-    what: str  # for people
-    recognises: Callable[[Path, bytes], bool]  # by name and beginning; of a folder the beginning is empty
+    Attributes:
+        what: Description for messages.
+        recognises: Detects the format from the path and the first bytes (empty for a folder).
+        read: Reader.
+    """
+
+    what: str
+    recognises: Callable[[Path, bytes], bool]
     read: Reader
 
 
@@ -42,7 +48,13 @@ FORMATS: dict[str, PointFormat] = {}
 
 
 def point_format(name: str, what: str, recognises: Callable[[Path, bytes], bool]) -> Callable[[Reader], Reader]:
-    """Declares a reader; at most one format should recognise a file."""
+    """Decorator that registers a reader; at most one format should recognise a file.
+
+    Args:
+        name: Name of the format.
+        what: Description for messages.
+        recognises: Detects the format from the path and the first bytes.
+    """
 
     def register(read: Reader) -> Reader:
         FORMATS[name] = PointFormat(what, recognises, read)
@@ -59,7 +71,18 @@ def logged_cloud(
     snr_db: np.ndarray | None = None,
     intensity: np.ndarray | None = None,
 ) -> LoggedCloud:
-    """A cloud of columns (point,) and places (point, 3); missing columns are nan."""
+    """Builds a cloud from columns; missing columns become nan.
+
+    Args:
+        frame: Frame index, (point,).
+        xyz_m: Positions in metres, (point, 3).
+        velocity_mps: Radial velocity in m/s, (point,).
+        snr_db: SNR in dB, (point,). Default: missing.
+        intensity: Intensity in the unit of the source, (point,). Default: missing.
+
+    Returns:
+        The cloud.
+    """
     nothing = np.full(len(frame), MISSING)
     x, y, z = np.asarray(xyz_m, float).reshape(-1, 3).T
     return LoggedCloud(

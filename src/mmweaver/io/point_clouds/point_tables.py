@@ -21,7 +21,7 @@ from mmweaver.io.point_clouds.ti_uart import MAGIC
 MAX_BYTES = 500 * MEGABYTE
 MAX_FRAME = 2**31
 MMFI_COLUMNS = 5  # x, y, z, Doppler, intensity
-# columns of a CSV, in letters and digits alone: name here
+# column names of a CSV, reduced to letters and digits -> name here
 COLUMNS = {
     "frame": "frame",
     "framenumber": "frame",
@@ -44,7 +44,17 @@ NUMBERED = re.compile(r"(\d+)")
     "csv", "CSV with Frame, X, Y, Z, Doppler (MARS, mRI, mHomeGes)", lambda path, head: path.suffix.lower() == ".csv"
 )
 def read_csv_points(path: Path) -> LoggedCloud:
-    """A CSV with a header that names frame, x, y, z and Doppler (m, m/s), as MARS and mRI have. Raises InputError."""
+    """Reads a CSV whose header names frame, x, y, z (m) and Doppler (m/s), as MARS and mRI write it.
+
+    Args:
+        path: The file.
+
+    Returns:
+        The cloud, with SNR and intensity if the file has them.
+
+    Raises:
+        InputError: If a column is missing or a value is not a number.
+    """
     text = read_text(path, max_bytes=MAX_BYTES)
     with foreign_errors(path, "no CSV ({reason}); export it again"):
         rows = list(csv.reader(StringIO(text)))
@@ -64,7 +74,18 @@ def read_csv_points(path: Path) -> LoggedCloud:
 
 
 def csv_columns(header: list[str], place: str) -> dict[str, int]:
-    """Where the header of a CSV has frame, x, y, z, velocity, snr and intensity. Raises InputError for missing ones."""
+    """Locates the columns of a CSV by its header.
+
+    Args:
+        header: Names of the columns.
+        place: Name of the source for error messages.
+
+    Returns:
+        Index of frame, x, y, z, velocity and, if present, snr and intensity.
+
+    Raises:
+        InputError: If a required column is missing.
+    """
     names = [COLUMNS.get(re.sub(r"[^a-z0-9]", "", name.lower())) for name in header]
     at = {name: index for index, name in enumerate(names) if name is not None}
     if missing := [name for name in ("frame", "x", "y", "z", "velocity") if name not in at]:
@@ -80,9 +101,16 @@ def _is_mmfi(path: Path, head: bytes) -> bool:
 
 @point_format("mmfi", "frames of float64 (MM-Fi), a file or a folder", _is_mmfi)
 def read_mmfi(path: Path) -> LoggedCloud:
-    """A frame of MM-Fi (.bin of float64), or a folder of frames in the order of their numbers. Raises InputError.
+    """Reads one frame of MM-Fi (.bin of float64), or a folder of frames in numerical order.
 
-    The frame with no points is kept: frames are numbered by their files.
+    Args:
+        path: File or folder. Frames without points count: each file is a frame.
+
+    Returns:
+        The cloud, with intensity.
+
+    Raises:
+        InputError: If a file is not a frame of MM-Fi.
     """
     files = sorted(path.glob("*.bin"), key=_number) if path.is_dir() else [path]
     if not files:
@@ -102,7 +130,17 @@ def read_mmfi(path: Path) -> LoggedCloud:
 
 @point_format("radhar", "text of RadHAR", lambda path, head: b"point_id:" in head)
 def read_radhar_text(path: Path) -> LoggedCloud:
-    """RadHAR's text: one message per point, point_id 0 begins a frame; x ahead, y left. Raises InputError."""
+    """Reads RadHAR's text: one message per point, a new frame at each point_id 0; x ahead, y to the left.
+
+    Args:
+        path: The file.
+
+    Returns:
+        The cloud, with intensity if every point has one.
+
+    Raises:
+        InputError: If the file is not such a text.
+    """
     columns: dict[bytes, list[float]] = {}
     for name, word in RADHAR_LINE.findall(read_bytes(path, max_bytes=MAX_BYTES)):
         try:
@@ -125,7 +163,17 @@ def read_radhar_text(path: Path) -> LoggedCloud:
     lambda path, head: path.suffix.lower() == ".npz" and {"frame", "pts"} <= set(read_npz(path)),
 )
 def read_point_npz(path: Path) -> LoggedCloud:
-    """mHomeGes: `frame`, `pts` (x, y, z, velocity, intensity); RadHAR as .npz: eight columns. Raises InputError."""
+    """Reads `frame` and `pts` of mHomeGes (x, y, z, velocity, intensity), or of RadHAR as .npz (eight columns).
+
+    Args:
+        path: The file.
+
+    Returns:
+        The cloud, with intensity.
+
+    Raises:
+        InputError: If the archive has other arrays or shapes.
+    """
     held = read_npz(path)
     if not {"frame", "pts"} <= set(held):
         raise InputError(f"{path} holds {', '.join(held)}, not frame and pts")
@@ -142,7 +190,7 @@ def read_point_npz(path: Path) -> LoggedCloud:
 
 
 def _renumbered(path: Path, frame: np.ndarray) -> np.ndarray:
-    """Frames counted from 0, gaps kept. Raises InputError where they are no rising whole numbers."""
+    """Frame numbers from 0, gaps kept. Raises InputError if they are not ascending integers."""
     frame = np.asarray(frame, float)
     is_whole = bool((np.abs(frame) < MAX_FRAME).all()) and not (frame % 1).any()
     if not is_whole or (np.diff(frame) < 0).any():

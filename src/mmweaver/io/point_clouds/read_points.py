@@ -1,4 +1,4 @@
-"""The one reader of point clouds: whatever a board or a public data set stores, with stated axes.
+"""The single reader of point clouds from boards and public data sets, with common axes.
 
 x to the right, y away from the radar, z up, in metres; radial velocity in m/s, positive = moving away.
 """
@@ -16,7 +16,7 @@ from mmweaver.io.point_clouds import point_tables, ti_uart  # noqa: F401
 from mmweaver.io.point_clouds.point_log import FORMATS, LoggedCloud, logged_cloud, point_format
 
 PROBE_BYTES = 1 << 16
-MAX_PLACE_M = 1e5  # what is beyond is damage
+MAX_PLACE_M = 1e5  # anything beyond indicates damage
 
 
 @point_format(
@@ -25,7 +25,7 @@ MAX_PLACE_M = 1e5  # what is beyond is damage
     lambda path, head: path.suffix.lower() == ".npz" and set(POINT_COLUMNS) <= set(read_npz(path)),
 )
 def read_own_points(path: Path) -> LoggedCloud:
-    """A points.npz, without intensities. Raises InputError."""
+    """Reads a points.npz of mmWeaver, without intensities. Raises InputError if it is malformed."""
     points = read_points_npz(path)
     return logged_cloud(points.frame, points.xyz_m, points.radial_velocity_mps, snr_db=points.snr_db)
 
@@ -34,14 +34,14 @@ def read_points(path: str | Path, kind: str | None = None) -> LoggedCloud:
     """Reads a point cloud.
 
     Args:
-        path: A file or folder.
-        kind: Its format, one of FORMATS. Default: the one that recognises it.
+        path: File or folder.
+        kind: Format, a key of FORMATS. Default: detected.
 
     Returns:
-        The points; frames count from 0, `snr_db` and `intensity` are nan where the file has none.
+        The points; frames count from 0, `snr_db` and `intensity` are nan if the file lacks them.
 
     Raises:
-        InputError: where the file cannot be read so.
+        InputError: If the format is unknown or the file is malformed.
     """
     path = Path(path)
     check_exists(path, "a file or a folder of point clouds")
@@ -57,7 +57,14 @@ def read_points(path: str | Path, kind: str | None = None) -> LoggedCloud:
 
 
 def recognised_kind(path: Path) -> str | None:
-    """The format that recognises a file or folder by its name and its beginning; None where none does."""
+    """Detects the format of a point cloud by its name and first 64 KiB.
+
+    Args:
+        path: File or folder.
+
+    Returns:
+        Key of FORMATS; None if no format recognises it.
+    """
     head = b""
     if not path.is_dir():
         with open_regular(path) as stream:
@@ -66,7 +73,17 @@ def recognised_kind(path: Path) -> str | None:
 
 
 def points_kind(path: Path) -> str:
-    """As `recognised_kind`. Raises InputError where none does."""
+    """Format of a file or folder, as `recognised_kind`.
+
+    Args:
+        path: File or folder.
+
+    Returns:
+        Key of FORMATS.
+
+    Raises:
+        InputError: If no format recognises it.
+    """
     if (kind := recognised_kind(path)) is None:
         known = "; ".join(one.what for one in FORMATS.values())
         raise InputError(f"{path} is no point cloud that is known: {known}; name its kind with --layout")

@@ -1,11 +1,11 @@
-"""The data port of TI's demos, as logged to a .dat: packets of TLVs after a magic word, little-endian.
+"""The data port of TI's demos as logged to a .dat: packets of TLVs after a magic word, little-endian.
 
-Out-of-box demos: TLV 1 are detected points, x, y, z in m and velocity in m/s as float32 (SDK 3 and later), or integers
-with a Q format (SDK 1 and 2); TLV 7 are SNR and noise in 0.1 dB; TLV 301 are compressed points with their units
-(xWRL6432, xWRL1432). The header ends with a sub-frame number, but on an xWR1443. 3D People Tracking: TLV 1020 are
-compressed spherical points with their units. Its predecessor, 3D People Counting, has
-another header, and TLV lengths that count their own eight bytes; its TLV 6 is that of 1020. Packets that are cut or
-whose lengths make no sense are skipped and counted.
+Out-of-box demos: TLV 1 contains detected points, x, y, z in m and velocity in m/s as float32 (SDK 3 and later), or
+integers with a Q format (SDK 1 and 2); TLV 7 SNR and noise in 0.1 dB; TLV 301 compressed points with their units
+(xWRL6432, xWRL1432). The header ends with a sub-frame number, except on the xWR1443. 3D People Tracking: TLV 1020
+contains compressed spherical points with their units. Its predecessor, 3D People Counting, has a different header and
+TLV lengths that include their own eight bytes; its TLV 6 equals TLV 1020. Truncated packets and packets with
+inconsistent lengths are skipped and counted.
 
 Reference: mmWave SDK User Guide, "Output data sent out of the demo"; TI, 3D People Tracking, "UART output data
 format"; TI's ROS driver (sub-frame number, SDK 1 and 2); parsers of TI's Industrial Visualizer (TLV 301 and 6).
@@ -29,33 +29,33 @@ HEADER = struct.Struct("<8sIIIIIII")  # magic, version, length, platform, frame,
 COUNTING_HEADER = struct.Struct("<8sIIIIIIIIIHH")  # ..., frame, sub-frame, margins, times, TLVs, checksum
 TLV = struct.Struct("<II")
 MAX_PACKET, MAX_TLVS = 1 << 17, 30
-MAX_PADDING = 32  # bytes of a packet after its last TLV
+MAX_PADDING = 32  # bytes after the last TLV of a packet
 POINTS, SIDE_INFO, COMPRESSED, SPHERICAL, COUNTED = 1, 7, 301, 1020, 6
-MAX_KIND = 2000  # of a TLV
+MAX_KIND = 2000  # TLV type
 WITHOUT_SUB_FRAME = 0x1443  # lower half of the platform
 INTEGER_POINT_BYTES = 12
 
 
 @runtime_checkable
 class ByteSource(Protocol):
-    """A pipe, a port or a file that is open for reading bytes."""
+    """A pipe, serial port or file opened for reading bytes."""
 
     def read(self, size: int, /) -> bytes:
-        """At most so many bytes; none at the end."""
+        """At most `size` bytes; none at the end."""
         ...
 
 
 @dataclass(frozen=True, kw_only=True)
 class UartLog:
-    """The points of a log, and what was left out."""
+    """Points of a log, and what was skipped."""
 
     points: LoggedCloud
-    frame_number: np.ndarray  # (frame,) as the board counts
-    skipped: int  # packets
+    frame_number: np.ndarray  # (frame,) counted by the board
+    skipped: int  # damaged packets
 
 
 class Packet(NamedTuple):
-    """One packet: its frame's number, points (point, 6) as in `point_packets`, and its end in the data."""
+    """One packet: frame number, points (point, 6) as in `point_packets`, and its end in the data."""
 
     number: int
     points: np.ndarray
@@ -64,12 +64,22 @@ class Packet(NamedTuple):
 
 @point_format("ti_uart", ".dat of a TI demo's data port", lambda path, head: MAGIC in head)
 def read_uart_points(path: Path) -> LoggedCloud:
-    """The points of a log alone. Raises InputError."""
+    """Points of a log. Raises InputError if it contains no packet."""
     return read_ti_uart(path).points
 
 
 def read_ti_uart(path: Path | str) -> UartLog:
-    """Reads a log of the data port. Raises InputError where it holds no packet."""
+    """Reads a log of the data port.
+
+    Args:
+        path: The file.
+
+    Returns:
+        Points, frame numbers, and the number of skipped packets.
+
+    Raises:
+        InputError: If it contains no packet.
+    """
     data = read_bytes(path, max_bytes=MAX_BYTES)
     packets: list[Packet] = []
     skipped, at = 0, data.find(MAGIC)
@@ -87,18 +97,26 @@ def read_ti_uart(path: Path | str) -> UartLog:
 
 
 def point_packets(source: ByteSource, head: bytes = b"") -> Iterator[np.ndarray]:
-    """The points (point, 6) of each packet of a stream as it arrives, `head` being what was already read of it.
+    """Iterates over the packets of a stream as they arrive.
 
-    Columns: x, y, z in m, velocity in m/s, SNR in dB, intensity. Raises InputError where no packet begins for long.
+    Args:
+        source: The stream.
+        head: Bytes that were already read from it. Default: none.
+
+    Yields:
+        Points of one packet, (point, 6): x, y, z in m, velocity in m/s, SNR in dB, intensity.
+
+    Raises:
+        InputError: If no packet starts within 128 KiB.
     """
     data, any_found = head, False
-    read: Callable[[int], bytes] = getattr(source, "read1", source.read)  # what is there, without waiting for more
+    read: Callable[[int], bytes] = getattr(source, "read1", source.read)  # available bytes, without blocking for more
     while more := read(MAX_PACKET):
         data += more
         while (at := data.find(MAGIC)) >= 0 and len(data) - at >= HEADER.size:
             length = HEADER.unpack_from(data, at)[2]
             if HEADER.size <= length <= MAX_PACKET and len(data) - at < length:
-                break  # the packet is still on its way
+                break  # incomplete packet
             packet = _packet(data, at)
             any_found |= packet is not None
             data = data[at + 1 if packet is None else packet.end :]
@@ -111,7 +129,7 @@ def point_packets(source: ByteSource, head: bytes = b"") -> Iterator[np.ndarray]
 
 
 def _packet(data: bytes, at: int) -> Packet | None:
-    """The packet at a place; None where it is damaged."""
+    """Decodes the packet at an offset; None if it is damaged."""
     if at + HEADER.size > len(data):
         return None
     _, _, length, platform, number, _, objects, tlvs = HEADER.unpack_from(data, at)
@@ -134,7 +152,7 @@ def _packet(data: bytes, at: int) -> Packet | None:
 
 
 def _tlvs(data: bytes, at: int, end: int, count: int, own_bytes: int = 0) -> dict[int, bytes] | None:
-    """The TLVs between two places by kind; None where they do not fill it. `own_bytes`: of each that it counts."""
+    """TLVs between two offsets by type; None if they do not fill it. `own_bytes` is included in each length."""
     found: dict[int, bytes] = {}
     if count > MAX_TLVS:
         return None
@@ -151,7 +169,7 @@ def _tlvs(data: bytes, at: int, end: int, count: int, own_bytes: int = 0) -> dic
 
 
 def _points(found: dict[int, bytes], objects: int) -> np.ndarray | None:
-    """Columns x, y, z, velocity, SNR in dB and intensity; None where lengths do not agree."""
+    """Columns x, y, z, velocity, SNR in dB and intensity; None if lengths are inconsistent."""
     if SPHERICAL in found:
         return _spherical(found[SPHERICAL])
     if COMPRESSED in found:
@@ -171,7 +189,7 @@ def _points(found: dict[int, bytes], objects: int) -> np.ndarray | None:
 def _integer_points(raw: bytes) -> np.ndarray | None:
     """Descriptor (count, Q format), then range bin, Doppler bin, peak, x, y, z as 16-bit integers.
 
-    The velocity is left out: its unit is in the board's .cfg alone.
+    The velocity is omitted, since only the board's .cfg defines its unit.
     """
     if len(raw) < 4:
         return None
@@ -185,7 +203,7 @@ def _integer_points(raw: bytes) -> np.ndarray | None:
 
 
 def _compressed(raw: bytes) -> np.ndarray | None:
-    """Units of place, velocity, SNR, noise and two counts; int16 x, y, z, Doppler and uint8 SNR, noise of each."""
+    """Units of position, velocity, SNR, noise, two counts; then int16 x, y, z, Doppler, uint8 SNR, noise per point."""
     if len(raw) < 20 or (len(raw) - 20) % 10:
         return None
     place_unit, velocity_unit, snr_unit, _ = struct.unpack_from("<4f", raw)

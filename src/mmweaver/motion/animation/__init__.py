@@ -1,1 +1,1 @@
-"""Steps along a path become joints: the activity library and the kinematics."""
+"""Animates steps along a path: the activity library and the kinematics."""

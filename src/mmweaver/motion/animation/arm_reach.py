@@ -17,13 +17,13 @@ Array = np.ndarray
 def reach(
     body: SkeletonProportions, target_m: Float[Array, "n 3"], elbow: Sequence[float] = (-0.3, 0.5, -1.0)
 ) -> Float[Array, "n 4"]:
-    """Arm angles that bring a wrist to a place; one out of reach is approached as far as the arm goes.
+    """Arm angles that bring a wrist to a position; a target out of reach is approached as far as the arm extends.
 
     Args:
-        body: whose bones.
-        target_m: place of the wrist (n, 3) in metres from spine3 in the chest's frame, y outward (left for the left
+        body: Bone lengths.
+        target_m: Position of the wrist (n, 3) in metres from spine3 in the chest's frame, y outward (left for the left
             arm, right for the right one), so that one target serves both arms.
-        elbow: direction in which the elbow points, in the same axes.
+        elbow: Direction in which the elbow points, in the same axes.
 
     Returns:
         Flexion, abduction, twist and elbow flexion (n, 4) in radians.

@@ -29,7 +29,7 @@ def dense_times(duration_s: float) -> Float[np.ndarray, " n"]:
     """Times at which motions are composed.
 
     Args:
-        duration_s: of the motion, in seconds.
+        duration_s: Duration of the motion in seconds.
 
     Returns:
         Times (n,) in seconds at 120 Hz, from two samples before 0 to at least two samples after the end.
@@ -51,13 +51,13 @@ def assemble(
     """Animates every step along the path, blends neighbours and solves the joints.
 
     Args:
-        steps: the scheduled steps of a plan in their order, each with its moves.
-        path: position and heading of the root over time.
-        body: whose bones.
-        seed: decides what the sentence leaves open.
-        duration_s: of the motion, in seconds.
-        floor_z_m: height of the floor in the radar's frame.
-        habits: of the person; none by default.
+        steps: Scheduled steps of a plan in order, each with its moves.
+        path: Position and heading of the root over time.
+        body: Bone lengths.
+        seed: Determines what the sentence leaves open.
+        duration_s: Duration of the motion in seconds.
+        floor_z_m: Height of the floor in the radar's frame, metres.
+        habits: Habits of the person; none by default.
 
     Returns:
         The motion at `dense_times`, in the radar's frame.
@@ -67,13 +67,13 @@ def assemble(
 
 
 def solved(controls: Controls, body: SkeletonProportions, *, duration_s: float, floor_z_m: float) -> PoseSequence:
-    """The joints of controls.
+    """Solves the joints of controls.
 
     Args:
-        controls: at `dense_times`.
-        body: whose bones.
-        duration_s: of the motion, in seconds.
-        floor_z_m: height of the floor in the radar's frame.
+        controls: Controls at `dense_times`.
+        body: Bone lengths.
+        duration_s: Duration of the motion in seconds.
+        floor_z_m: Height of the floor in the radar's frame, metres.
 
     Returns:
         The motion in the radar's frame.
@@ -96,13 +96,13 @@ def assembled_controls(
     """Animates every step along the path and blends neighbours.
 
     Args:
-        steps: the scheduled steps of a plan in their order, each with its moves.
-        path: position and heading of the root over time.
-        body: whose bones.
-        seed: decides what the sentence leaves open; each step has a random stream of its own.
-        duration_s: of the motion, in seconds.
-        habits: of the person; none by default.
-        entry: the state in which the motion begins; that of the first step by default.
+        steps: Scheduled steps of a plan in order, each with its moves.
+        path: Position and heading of the root over time.
+        body: Bone lengths.
+        seed: Determines what the sentence leaves open; each step has a random stream of its own.
+        duration_s: Duration of the motion in seconds.
+        habits: Habits of the person; none by default.
+        entry: State in which the motion begins; None for that of the first step.
 
     Returns:
         Controls at `dense_times`.
@@ -141,7 +141,7 @@ def _same_arms(one: PlacedStep, other: PlacedStep) -> bool:
 
 
 def _merge_gait(steps: tuple[PlacedStep, ...]) -> tuple[PlacedStep, ...]:
-    """Merges walking, turning and walking on into one gait: blending two rhythms would make the feet jump."""
+    """Merges consecutive walking and turning into one gait: blending two step rhythms would make the feet jump."""
     merged: list[PlacedStep] = []
     for placed in steps:
         if merged and _is_plain_gait(placed.step) and _is_plain_gait(merged[-1].step):
@@ -154,7 +154,7 @@ def _merge_gait(steps: tuple[PlacedStep, ...]) -> tuple[PlacedStep, ...]:
 
 
 def _may_be_uneven(placed: PlacedStep) -> bool:
-    """Whether the tempo of a step may change: on the spot, with the feet on the floor, and going on for a while."""
+    """Whether the tempo of a step may drift: on the spot, feet on the floor, and a continuous activity."""
     activity = BY_KEY[placed.step.lower]
     return not (placed.moves or activity.once or activity.posture == "floor" or placed.step.lower in _IN_THE_AIR)
 

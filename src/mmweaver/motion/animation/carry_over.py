@@ -1,8 +1,8 @@
-"""Makes a motion begin exactly as the one before it left off: place, velocity and acceleration of every control.
+"""Continuity at a seam: a motion starts with the position, velocity and acceleration with which the previous one ended.
 
-The difference at the seam is added to the new motion and fades by a quintic, the movement of least jerk (Flash and
-Hogan, J. Neurosci. 1985). It is added to the controls, not to the joints, so that bones keep their lengths; feet step
-over one after the other.
+The difference at the seam is added to the new motion and fades by a quintic, the minimum-jerk movement (Flash and
+Hogan, J. Neurosci. 1985). It is added to the controls, not to the joints, so that bones keep their lengths; the feet
+step over one after the other.
 """
 
 from dataclasses import dataclass, fields, replace
@@ -14,15 +14,15 @@ from mmweaver.motion.animation.controls import FEET, TURNING, Array, Controls, s
 from mmweaver.motion.animation.profiles import bump
 
 FADING_S = 0.6
-LANDING_S = 0.06  # of a sole that is still in the air, at least
-STEP_SHARE = 0.55  # of that time, in which one foot steps over
-ROLLED = ("pelvis_rad", "knee_up_rad", "foot_rad")  # angles that go round in a forward roll
+LANDING_S = 0.06  # minimum for a sole that is still in the air
+STEP_SHARE = 0.55  # share of that time in which one foot steps over
+ROLLED = ("pelvis_rad", "knee_up_rad", "foot_rad")  # angles that wrap around in a forward roll
 STEP_HEIGHT_M, SHUFFLE_M = 0.05, 0.1  # of a step over much more than the second
 
 
 @dataclass(frozen=True, kw_only=True)
 class ControlsState:
-    """Controls (1, ...) at one instant, their rates per second and the rates of these."""
+    """Controls (1, ...) at one instant with their first and second time derivatives."""
 
     value: Controls
     rate: Controls
@@ -33,9 +33,9 @@ class ControlsState:
         """The state at one instant, by cubic splines.
 
         Args:
-            controls: at the times `time_s` (n,), in seconds.
-            time_s: increasing times.
-            at_s: the instant, within them.
+            controls: Controls at the times `time_s`.
+            time_s: Increasing times (n,) in seconds.
+            at_s: Instant in seconds, within `time_s`.
 
         Returns:
             Values, rates and accelerations; angles of a roll are unwrapped first.
@@ -65,12 +65,12 @@ def carried_over(controls: Controls, time_s: Float[Array, " n"], before: Control
     """Makes a motion begin in a given state.
 
     Args:
-        controls: of the motion, at the times `time_s` (n,) in seconds.
-        time_s: increasing times; the seam is at 0.
-        before: the state at the seam.
+        controls: Controls of the motion at the times `time_s`.
+        time_s: Increasing times (n,) in seconds; the seam is at 0.
+        before: State at the seam.
 
     Returns:
-        The controls, changed within FADING_S from the seam on.
+        The controls, modified within FADING_S after the seam.
     """
     own = ControlsState.at(controls, time_s, 0.0)
     u = np.clip(time_s / FADING_S, 0.0, 1.0)
@@ -94,7 +94,7 @@ def carried_over(controls: Controls, time_s: Float[Array, " n"], before: Control
         shares = (_left(each), *shares[1:]) if field.name in FEET else shares
         offset = sum(scaled(np.broadcast_to(gap, values.shape), share) for share, gap in zip(shares, gaps, strict=True))
         changed[field.name] = values + offset
-        if field.name in ("contact", "knee_room"):  # shares, whose rates would lead them on beyond 0 and 1
+        if field.name in ("contact", "knee_room"):  # shares: extrapolating their rates would exceed 0 and 1
             known = np.stack([values, np.broadcast_to(getattr(before.value, field.name), values.shape)])
             low, high = np.minimum(known.min(axis=0), 0.0), np.maximum(known.max(axis=0), 1.0)
             changed[field.name] = np.clip(changed[field.name], low, high)
@@ -108,9 +108,9 @@ def carried_over(controls: Controls, time_s: Float[Array, " n"], before: Control
 
 
 def _landed(own: Array, time_s: Float[Array, " n"], gaps: list[Array]) -> Array:
-    """Heights or pitches (n, 2) of feet with what is left of a flight; the shorter, the sooner it would be over.
+    """Heights or pitches (n, 2) of feet with the residual of a flight, which fades the faster the sooner it would end.
 
-    Within the usual time a sole that comes down at speed would go into the floor, and the toes past level.
+    With the usual fading time, a sole that descends fast would penetrate the floor, and the toes would pass level.
     """
     tried_s, u = np.linspace(FADING_S, LANDING_S, 28)[:, None], np.linspace(0.0, 1.0, 25)
     landed = own.copy()
@@ -125,7 +125,7 @@ def _landed(own: Array, time_s: Float[Array, " n"], gaps: list[Array]) -> Array:
 
 
 def _moving_and_left(u: Float[Array, " n"], lasts_s: float) -> tuple[Array, Array, Array]:
-    """What a gap, a rate and an acceleration of one at 0 leave until `lasts_s`."""
+    """What a gap, a rate and an acceleration of 1 at time 0 contribute until `lasts_s`."""
     u = np.clip(u, 0.0, 1.0)
     left = (1 - u) ** 3
     return _left(u), left * (u + 3 * u**2) * lasts_s, left * u**2 / 2 * lasts_s**2

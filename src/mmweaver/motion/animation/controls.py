@@ -10,9 +10,9 @@ from jaxtyping import Float
 
 Array = np.ndarray
 LEFT, RIGHT = 0, 1
-OUTWARD = (1.0, -1.0)  # the sign of the body's y for what is outward on the left, on the right
-FEET = ("foot_m", "foot_rad", "contact", "knee_out_rad")  # fields that each foot has of its own
-TURNING = (0, 2)  # of the angles of an arm: flexion and twist go round
+OUTWARD = (1.0, -1.0)  # sign of the body's y that is outward on the left, on the right
+FEET = ("foot_m", "foot_rad", "contact", "knee_out_rad")  # fields with a value per foot
+TURNING = (0, 2)  # arm angles that wrap around: flexion and twist
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,7 +43,7 @@ class Controls:
         return replace(self, **{field.name: getattr(self, field.name).copy() for field in fields(self)})
 
 
-# Names of single angles: the array of Controls, and the index within it.
+# Single angles by name: the array of Controls, and the index within it.
 CHANNELS: dict[str, tuple[str, int | None]] = {
     name: (array, index)
     for array, names in {
@@ -63,9 +63,9 @@ def blend(parts: list[Controls], weights: list[Float[Array, " n"]], feet: list[F
     """Weighted sum of Controls over the same times.
 
     Args:
-        parts: the Controls.
-        weights: of each part, (n,); they sum to 1 at each time.
-        feet: the same for what each foot has of its own, (n, 2).
+        parts: Controls to blend.
+        weights: Weight of each part (n,); they sum to 1 at each time.
+        feet: Weights (n, 2) of the fields that have a value per foot.
 
     Returns:
         The blended Controls.
@@ -80,29 +80,41 @@ def blend(parts: list[Controls], weights: list[Float[Array, " n"]], feet: list[F
 
 
 def scaled(values: Array, share: Array) -> Array:
-    """Values (n, ...) times shares (n,) or (n, 2)."""
+    """Multiplies values by shares.
+
+    Args:
+        values: Values (n, ...).
+        share: Shares (n,), or (n, 2) for fields with a value per foot.
+    """
     return values * share.reshape(share.shape + (1,) * (values.ndim - share.ndim))
 
 
 def mix_arm(controls: Controls, side: int, arm: Float[Array, "*n 4"], weight: Float[Array, "..."] | float) -> None:
-    """Blends the angles of an arm, in place.
+    """Blends the angles of an arm in place.
 
     Args:
-        controls: whose `arm_rad` changes.
+        controls: Controls whose `arm_rad` is modified.
         side: LEFT or RIGHT.
-        arm: flexion, abduction, twist and elbow flexion in radians, (4,) or (n, 4).
+        arm: Flexion, abduction, twist and elbow flexion in radians, (4,) or (n, 4).
         weight: 0 keeps the angles, 1 replaces them; (n,) or a number.
     """
     controls.arm_rad[:, side] += np.asarray(weight)[..., None] * (arm - controls.arm_rad[:, side])
 
 
 def whole_turns(gap_rad: Array) -> Array:
-    """The whole turns in differences of angles, in radians."""
+    """Nearest multiples of 2 pi.
+
+    Args:
+        gap_rad: Differences of angles in radians, any shape.
+
+    Returns:
+        Radians, same shape.
+    """
     return np.asarray(2 * np.pi * np.round(gap_rad / (2 * np.pi)))
 
 
 def _remove_whole_turns(before: Controls, part: Controls, at: int) -> None:
-    """Takes whole turns out of the arms of a part: who has circled them does not turn them back afterwards."""
+    """Removes whole turns from the arm angles of a part: arms that have circled do not unwind afterwards."""
     at = min(at, len(part.heading_rad) - 1)
     for angle in TURNING:
         part.arm_rad[..., angle] -= whole_turns(part.arm_rad[at, :, angle] - before.arm_rad[at, :, angle])
@@ -111,13 +123,13 @@ def _remove_whole_turns(before: Controls, part: Controls, at: int) -> None:
 def blended(
     parts: list[Controls], starts_s: list[float], blends_s: list[float], time_s: Float[Array, " n"]
 ) -> Controls:
-    """Concatenates parts; where the feet of two are at different positions, they step over one after the other.
+    """Concatenates parts; feet whose positions differ step over one after the other.
 
     Args:
-        parts: Controls of each step, all at the times `time_s` (n,) in seconds.
-        starts_s: time around which each part takes over.
-        blends_s: seconds within which it does.
-        time_s: increasing times.
+        parts: Controls of each step, all at the times `time_s`.
+        starts_s: Time around which each part takes over, seconds.
+        blends_s: Duration of each transition, seconds.
+        time_s: Increasing times (n,) in seconds.
 
     Returns:
         Controls at the same times.

@@ -1,7 +1,7 @@
-"""How a person does things: larger or smaller, and over tens of seconds not evenly. The pace is `people.Person`'s.
+"""Personal movement habits: amplitude, and tempo variation over tens of seconds. The pace is `people.Person`'s.
 
-The same person has the same habits in every movement, so twenty seconds of one person resemble each other more than
-those of two. Without it a recogniser that is trained on generated motions learns one tempo.
+A person has the same habits in every movement, so twenty seconds of one person resemble each other more than those of
+two. Without them, a recogniser trained on generated motions would learn a single tempo.
 """
 
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from mmweaver.motion.animation.profiles import bump, plateau
 
 Array = np.ndarray
 _SPREAD = 0.06  # of amplitude between people, log-normal
-_UNEVEN, _SLOW_HZ = (0.03, 0.14), (0.06, 0.2)  # how much the tempo drifts, and how often it goes to and fro
+_UNEVEN, _SLOW_HZ = (0.03, 0.14), (0.06, 0.2)  # relative drift of the tempo, and its frequency
 _PAUSE_EVERY_S, _PAUSE_S, _SHORTEST_S = (5.0, 25.0), (0.5, 1.1), 4.0
 _EDGE_S = 0.6  # at the ends of a step the tempo is even
 _RATE_HZ = 60.0
@@ -22,19 +22,35 @@ _RATE_HZ = 60.0
 
 @dataclass(frozen=True, kw_only=True)
 class Habits:
-    """One person's habits; the default has none."""
+    """Habits of one person; the default has none.
 
-    amplitude: float = 1.0  # relative to the usual
-    unevenness: float = 0.0  # relative change of the tempo over time
+    Attributes:
+        amplitude: Size of movements relative to the usual one.
+        unevenness: Relative variation of the tempo over time.
+        drift_hz: Frequency of this variation.
+        phase_rad: Its phase at the start of a step.
+        pause_every_s: Interval of pauses in a continuous movement.
+        pause_s: Duration of a pause.
+    """
+
+    amplitude: float = 1.0
+    unevenness: float = 0.0
     drift_hz: float = 0.1
     phase_rad: float = 0.0
-    pause_every_s: float = np.inf  # of a movement that goes on
+    pause_every_s: float = np.inf
     pause_s: float = 0.8
 
     def warped(self, time_s: Float[Array, " n"], start_s: float, end_s: float) -> Float[Array, " n"]:
-        """The times of an even movement that this person reaches at `time_s`; a step still starts and ends as planned.
+        """Warps time within a step, so that the tempo drifts and the person pauses now and then.
 
-        The tempo drifts, and now and then the person pauses. C2; the same as `time_s` outside the step.
+        Args:
+            time_s: Times (n,) in seconds.
+            start_s: Start of the step, seconds.
+            end_s: End of the step, seconds.
+
+        Returns:
+            Times of an even movement reached at `time_s`, C2; identical to `time_s` outside the step, which still
+            starts and ends as planned.
         """
         lasts = end_s - start_s
         if lasts < _SHORTEST_S or not (self.unevenness or np.isfinite(self.pause_every_s)):
@@ -46,7 +62,7 @@ class Habits:
         for pause_s in pauses_s:
             rate = rate * (1 - 0.9 * bump((fine_s - pause_s) / (2 * self.pause_s)))
         gone_s = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]))]) * (fine_s[1] - fine_s[0])
-        # What drift and pauses leave over is made up for where the tempo is not held at the ends.
+        # The residual of drift and pauses is compensated away from the ends, where the tempo is fixed.
         share = np.concatenate([[0.0], np.cumsum(0.5 * (inside[1:] + inside[:-1]))]) * (fine_s[1] - fine_s[0])
         gone_s += (lasts - gone_s[-1]) * share / share[-1]
         from scipy.interpolate import CubicSpline
@@ -60,7 +76,14 @@ NO_HABITS = Habits()
 
 
 def habits_of(subject: int) -> Habits:
-    """The habits of a person; the same number, the same habits."""
+    """Samples the habits of a person, reproducibly.
+
+    Args:
+        subject: Number of the person, see `people.person_of`.
+
+    Returns:
+        The habits; the same for the same number.
+    """
     rng = stream(subject, "motion", "habits")
     amplitude = np.exp(np.clip(rng.normal(0.0, _SPREAD), -2 * _SPREAD, 2 * _SPREAD))
     return Habits(

@@ -17,23 +17,23 @@ Angles = Float[Array, " n"]
 Frames = Float[Array, "n 3 3"]
 Vectors = Float[Array, "n 3"]
 
-LONGEST_STANCE = 0.998  # of the leg's length, hip to ankle of a standing leg: the knee never locks
-LONGEST_LEG = 0.9995  # and of any leg
+LONGEST_STANCE = 0.998  # hip to ankle of a standing leg, share of its length: the knee never locks
+LONGEST_LEG = 0.9995  # the same of any leg
 SIDES = ("left", "right")
 
 
 def rotation_x(angle: Angles) -> Frames:
-    """Rotation matrices (n, 3, 3) about x; angles (n,) in radians."""
+    """Rotation matrices (n, 3, 3) about x by angles (n,) in radians."""
     return _about(angle, 1, 2)
 
 
 def rotation_y(angle: Angles) -> Frames:
-    """Rotation matrices (n, 3, 3) about y."""
+    """Rotation matrices (n, 3, 3) about y by angles (n,) in radians."""
     return _about(angle, 2, 0)
 
 
 def rotation_z(angle: Angles) -> Frames:
-    """Rotation matrices (n, 3, 3) about z."""
+    """Rotation matrices (n, 3, 3) about z by angles (n,) in radians."""
     return _about(angle, 0, 1)
 
 
@@ -47,14 +47,29 @@ def _about(angle: Angles, first: int, second: int) -> Frames:
 
 
 def rotated(frame: Frames, vector: Array) -> Vectors:
-    """Rotates one vector (3,), or one for each frame (n, 3), by (n, 3, 3)."""
+    """Rotates vectors.
+
+    Args:
+        frame: Rotation matrices (n, 3, 3).
+        vector: One vector (3,), or one per frame (n, 3).
+
+    Returns:
+        Rotated vectors (n, 3).
+    """
     if vector.ndim == 1:
         return frame @ vector
     return np.einsum("nij,nj->ni", frame, vector)
 
 
 def roll_pitch_yaw(angles: Vectors) -> Frames:
-    """Rotations (n, 3, 3) of roll (right side down), pitch (forward) and yaw (to the left), applied in this order."""
+    """Rotations of roll (right side down), pitch (forward) and yaw (to the left), applied in this order.
+
+    Args:
+        angles: Roll, pitch and yaw (n, 3) in radians.
+
+    Returns:
+        Rotation matrices (n, 3, 3).
+    """
     return rotation_z(angles[:, 2]) @ rotation_y(angles[:, 1]) @ rotation_x(angles[:, 0])
 
 
@@ -62,8 +77,8 @@ def solve(body: SkeletonProportions, controls: Controls) -> Joints:
     """Solves the joints of a pose at every time.
 
     Args:
-        body: whose bones.
-        controls: at n times.
+        body: Bone lengths.
+        controls: Controls at n times.
 
     Returns:
         Joints (n, 22, 3) in metres in the floor frame (z up from the floor).
@@ -83,7 +98,15 @@ def solve(body: SkeletonProportions, controls: Controls) -> Joints:
 
 
 def chest_of(body: SkeletonProportions, controls: Controls) -> tuple[Vectors, Frames]:
-    """Places (n, 3) in metres of spine3 in the floor frame, and rotations (n, 3, 3) of the chest."""
+    """Position and orientation of the chest.
+
+    Args:
+        body: Bone lengths.
+        controls: Controls at n times.
+
+    Returns:
+        Position of spine3 (n, 3) in metres in the floor frame, and rotations (n, 3, 3) of the chest.
+    """
     joints = np.zeros((len(controls.heading_rad), NUM_JOINTS, 3))
     pelvis_frame = rotation_z(controls.heading_rad) @ roll_pitch_yaw(controls.pelvis_rad)
     joints[:, 0] = _pelvis(body, controls, pelvis_frame, [_ankle(body, controls, side) for side in (LEFT, RIGHT)])
@@ -92,14 +115,30 @@ def chest_of(body: SkeletonProportions, controls: Controls) -> tuple[Vectors, Fr
 
 
 def arm_frame(arm_rad: Float[Array, "n 4"], side: int) -> Frames:
-    """Rotation of the upper arm in the chest's frame, (n, 3, 3)."""
+    """Rotation of the upper arm in the chest's frame.
+
+    Args:
+        arm_rad: Flexion, abduction, twist and elbow flexion (n, 4) in radians.
+        side: LEFT or RIGHT.
+
+    Returns:
+        Rotation matrices (n, 3, 3).
+    """
     sign = 1.0 if side == LEFT else -1.0
     flexion, abduction, twist = arm_rad[:, 0], sign * arm_rad[:, 1], sign * arm_rad[:, 2]
     return rotation_y(-flexion) @ rotation_x(abduction) @ rotation_z(twist)
 
 
 def collar_frame(arm_rad: Float[Array, "n 4"], side: int) -> Frames:
-    """Rotation of the collar bone, which rises with the arm, (n, 3, 3)."""
+    """Rotation of the collar bone, which rises with the arm, in the chest's frame.
+
+    Args:
+        arm_rad: Flexion, abduction, twist and elbow flexion (n, 4) in radians.
+        side: LEFT or RIGHT.
+
+    Returns:
+        Rotation matrices (n, 3, 3).
+    """
     sign = 1.0 if side == LEFT else -1.0
     share = 0.5 - 0.5 * np.cos(arm_rad[:, 0]) * np.cos(arm_rad[:, 1])  # 0 hanging, 1 overhead
     return rotation_x(sign * 0.45 * share)
@@ -112,15 +151,15 @@ def _ankle(body: SkeletonProportions, controls: Controls, side: int) -> Vectors:
 
 
 def ankle_from_foot(body: SkeletonProportions, yaw: Angles, pitch: Angles) -> Vectors:
-    """Where the ankle is: the foot pivots on its ball or, toes up, on its heel.
+    """Position of the ankle: the foot pivots on its ball or, toes up, on its heel.
 
     Args:
-        body: whose bones.
-        yaw: heading of the foot (n,) in radians.
-        pitch: heel up positive, (n,) in radians.
+        body: Bone lengths.
+        yaw: Heading of the foot (n,) in radians.
+        pitch: Pitch of the foot, heel up positive, (n,) in radians.
 
     Returns:
-        The ankle (n, 3) in metres from the point of the floor under the ankle of the flat foot.
+        The ankle (n, 3) in metres from the floor point below the ankle of the flat foot.
     """
     height, ball, heel = body.ankle_height_m, body.ball_m, body.heel_m
     on_ball = rise((pitch + 0.2) / 0.4)

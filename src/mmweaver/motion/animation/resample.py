@@ -10,9 +10,17 @@ from mmweaver.core.shapes import Joints, PerFrame
 
 
 def resample(pose: PoseSequence, time_s: PerFrame) -> PoseSequence:
-    """The motion at `time_s` (frame,) in seconds by cubic interpolation, for radar frames or chirps.
+    """Resamples a motion by cubic interpolation, for radar frames or chirps.
 
-    Raises InputError where a time is outside the motion: it is never extrapolated.
+    Args:
+        pose: The motion.
+        time_s: Times (frame,) in seconds.
+
+    Returns:
+        The motion at these times.
+
+    Raises:
+        InputError: If a time is outside the motion, which is never extrapolated.
     """
     from scipy.interpolate import CubicSpline
 
@@ -27,7 +35,15 @@ def resample(pose: PoseSequence, time_s: PerFrame) -> PoseSequence:
 
 
 def joints_and_velocities(pose: PoseSequence, time_s: PerFrame) -> tuple[Joints, Joints]:
-    """Joints in metres and their velocities in m/s at given times, (time, 22, 3) float32 each; clamped at the ends."""
+    """Joints and their velocities by cubic interpolation; times are clamped to the motion.
+
+    Args:
+        pose: The motion.
+        time_s: Times (time,) in seconds.
+
+    Returns:
+        Joints in metres and velocities in m/s, float32, (time, 22, 3) each.
+    """
     from scipy.interpolate import CubicSpline
 
     spline = CubicSpline(pose.time_s, pose.joints_m, axis=0)

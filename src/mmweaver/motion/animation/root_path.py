@@ -13,9 +13,16 @@ Times = Float[Array, "*shape"]
 
 @dataclass(frozen=True, kw_only=True)
 class Move:
-    """A move along an arc (a line where curvature is 0) at constant speed, with ramps at its ends.
+    """A move along an arc (a line if the curvature is 0) at constant speed, with ramps at its ends.
 
-    With `ramp_in_s` 0 the person was moving before the start, with `ramp_out_s` 0 goes on after the end.
+    Attributes:
+        start_s: Start in seconds.
+        end_s: End in seconds.
+        length_m: Length of the path in metres.
+        direction_rad: Direction at the start, from +x towards +y.
+        ramp_in_s: Time of acceleration; 0 if the person was moving before the start.
+        ramp_out_s: Time of deceleration; 0 if the person keeps moving after the end.
+        curvature_per_m: Inverse radius, positive to the person's left.
     """
 
     start_s: float
@@ -27,7 +34,14 @@ class Move:
     curvature_per_m: float = 0.0
 
     def gone_m(self, time_s: Times) -> Times:
-        """Distance covered, in metres, at each time in seconds."""
+        """Distance covered since the start of the move.
+
+        Args:
+            time_s: Times in seconds, any shape.
+
+        Returns:
+            Metres, same shape.
+        """
         span_s = self.end_s - self.start_s
         u = np.asarray((time_s - self.start_s) / span_s)
         return np.asarray(self.length_m * travel(u, self.ramp_in_s / span_s, self.ramp_out_s / span_s))
@@ -38,11 +52,25 @@ class Move:
         return self.length_m / (self.end_s - self.start_s - self.ramp_in_s / 2 - self.ramp_out_s / 2)
 
     def shift_m(self, time_s: Times) -> Float[Array, "*shape 2"]:
-        """Displacement (x, y) in metres from the start of the move, at each time."""
+        """Displacement since the start of the move.
+
+        Args:
+            time_s: Times in seconds, any shape.
+
+        Returns:
+            (x, y) in metres, (..., 2).
+        """
         return self.shift_after_m(self.gone_m(time_s))
 
     def shift_after_m(self, gone: Float[Array, "*shape"]) -> Float[Array, "*shape 2"]:
-        """Displacement (x, y) in metres after so many metres of the way."""
+        """Displacement after a distance along the path.
+
+        Args:
+            gone: Distance in metres, any shape.
+
+        Returns:
+            (x, y) in metres, (..., 2).
+        """
         bend = self.curvature_per_m
         ahead = np.sin(bend * gone) / bend if bend else gone
         left = (1 - np.cos(bend * gone)) / bend if bend else np.zeros_like(gone)
@@ -57,7 +85,13 @@ class Move:
 
 @dataclass(frozen=True, kw_only=True)
 class Turn:
-    """A turn on the spot, to the person's left where positive."""
+    """A turn on the spot.
+
+    Attributes:
+        start_s: Start in seconds.
+        end_s: End in seconds.
+        angle_rad: Angle, positive to the person's left.
+    """
 
     start_s: float
     end_s: float
@@ -66,7 +100,14 @@ class Turn:
 
 @dataclass(frozen=True, kw_only=True)
 class RootPath:
-    """Path of the ground point under a person: start, moves and turns. Frame: x right, y away from the radar."""
+    """Path of the floor point below a person. Frame: x right, y away from the radar.
+
+    Attributes:
+        start_m: Start (x, y) in metres.
+        heading_rad: Initial heading, from +x towards +y.
+        moves: Moves in temporal order.
+        turns: Turns on the spot in temporal order.
+    """
 
     start_m: tuple[float, float]
     heading_rad: float
@@ -74,14 +115,28 @@ class RootPath:
     turns: tuple[Turn, ...] = ()
 
     def position_m(self, time_s: Times) -> Float[Array, "*shape 2"]:
-        """Position (x, y) in metres at each time in seconds."""
+        """Position of the root.
+
+        Args:
+            time_s: Times in seconds, any shape.
+
+        Returns:
+            (x, y) in metres, (..., 2).
+        """
         position = np.zeros((*np.shape(time_s), 2)) + np.array(self.start_m)
         for move in self.moves:
             position = position + move.shift_m(time_s)
         return position
 
     def facing_rad(self, time_s: Times) -> Times:
-        """Heading from +x towards +y at each time."""
+        """Heading of the root.
+
+        Args:
+            time_s: Times in seconds, any shape.
+
+        Returns:
+            Radians from +x towards +y, same shape.
+        """
         heading = np.full(np.shape(time_s), self.heading_rad)
         for turn in self.turns:
             heading = heading + turn.angle_rad * rise((time_s - turn.start_s) / (turn.end_s - turn.start_s))
@@ -90,7 +145,14 @@ class RootPath:
         return heading
 
     def speed_mps(self, time_s: Times) -> Times:
-        """Speed over the floor at each time, by central differences."""
+        """Speed over the floor, by central differences.
+
+        Args:
+            time_s: Times in seconds, any shape.
+
+        Returns:
+            m/s, same shape.
+        """
         step = 1e-3
         gap = self.position_m(time_s + step) - self.position_m(time_s - step)
         return np.hypot(gap[..., 0], gap[..., 1]) / (2 * step)

@@ -9,7 +9,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import NUM_JOINTS, joint
 
 ALLOWED_M = (0.78, 2.2)
-RECORDED_M = (1.2, 2.2)  # of recorded people, whose size tells the unit of a file
+RECORDED_M = (1.2, 2.2)  # of recorded people, whose size determines the unit of a file
 
 # Fractions of the height, in the body's own frame: x forward, y to its left, z up; arms hang, feet point forward.
 # Segment lengths after Drillis and Contini (Winter, Biomechanics and Motor Control, 2009), spine split as SMPL does.
@@ -37,7 +37,11 @@ MOUTH_FROM_HEAD = (0.058, 0.0, -0.004)
 
 @dataclass(frozen=True)
 class SkeletonProportions:
-    """Bone vectors of one person in metres, in the body's own frame (x forward, y left, z up)."""
+    """Bone vectors of one person in metres, in the body's own frame (x forward, y left, z up).
+
+    Raises:
+        InputError: If the height is outside `ALLOWED_M`.
+    """
 
     height_m: float
 
@@ -90,12 +94,12 @@ class SkeletonProportions:
 
     @property
     def heel_m(self) -> float:
-        """From the ankle back to the heel, along the sole."""
+        """Distance from the ankle back to the heel, along the sole, in metres."""
         return HEEL_BEHIND_ANKLE * self.height_m
 
     @property
     def ball_m(self) -> float:
-        """From the ankle forward to the ball of the foot, along the sole."""
+        """Distance from the ankle forward to the ball of the foot, along the sole, in metres."""
         return float(self.offset_m[joint("left_foot"), 0])
 
     @cached_property
@@ -104,5 +108,9 @@ class SkeletonProportions:
         return np.array(MOUTH_FROM_HEAD) * self.height_m
 
     def pelvis_height_m(self, stretch: float) -> float:
-        """Height in metres of the pelvis above the floor, on legs extended to this share of their length."""
+        """Height of the pelvis above the floor in metres.
+
+        Args:
+            stretch: Extension of the legs as a share of their length.
+        """
         return self.ankle_height_m + self.leg_m * stretch + self.hip_below_pelvis_m

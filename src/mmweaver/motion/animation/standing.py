@@ -1,4 +1,4 @@
-"""Standing: the pose that every other activity starts from and returns to, with sway and breathing."""
+"""Standing: the pose from which every other activity starts and to which it returns, with sway and breathing."""
 
 from typing import TYPE_CHECKING
 
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
 Array = np.ndarray
 STAND_STRETCH = 0.9955  # of the legs' length
-ANKLE_BEHIND = 0.022  # of the height: the pelvis is a little in front of the ankles
-HALF_STANCE = 0.056  # of the height: from the middle to a foot
+ANKLE_BEHIND = 0.022  # of the height: the pelvis is slightly in front of the ankles
+HALF_STANCE = 0.056  # of the height: from the midline to a foot
 TOES_OUT_RAD = 0.12
 ARM_HANGING = (-0.02, 0.13, 0.0, 0.22)  # flexion, abduction, twist, elbow
 
@@ -26,7 +26,17 @@ def home_feet(
     heading_rad: Float[Array, " n"],
     half_stance: float = HALF_STANCE,
 ) -> Float[Array, "n 2 3"]:
-    """Positions (n, 2, 3) in metres of both feet, flat on the floor, for roots (n, 2) and headings (n,)."""
+    """Positions of both feet of a standing body, flat on the floor.
+
+    Args:
+        body: Bone lengths.
+        position_m: Root (x, y) in metres, (n, 2).
+        heading_rad: Heading (n,) from +x towards +y.
+        half_stance: Distance of a foot from the midline as a share of the height.
+
+    Returns:
+        Metres, (n, 2, 3), left foot first.
+    """
     aside = np.array(OUTWARD) * half_stance * body.height_m
     behind = -ANKLE_BEHIND * body.height_m
     cos, sin = np.cos(heading_rad)[:, None], np.sin(heading_rad)[:, None]
@@ -36,7 +46,11 @@ def home_feet(
 
 
 def upright(context: "StepContext") -> Controls:
-    """Standing at the root, arms hanging, with sway and breathing."""
+    """Controls of a body standing at the root, arms hanging, with sway and breathing.
+
+    Args:
+        context: Step with times, body, path and random stream.
+    """
     body, time_s, rng = context.body, context.time_s, context.rng
     n = len(time_s)
     position, heading = context.path.position_m(time_s), context.path.facing_rad(time_s)

@@ -1,4 +1,4 @@
-"""The step that is animated: what its function gets, and the building blocks by which it changes the Controls."""
+"""The step to animate: the input of its function, and the building blocks by which it changes the Controls."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -22,12 +22,18 @@ from mmweaver.motion.language.plan import Step
 
 BOTH = (LEFT, RIGHT)
 Place = Sequence[Curve] | Float[np.ndarray, "n 3"]  # ahead, outward, up
-STOOL_HEIGHT_M = 0.45  # of a seat where the scene has none
+STOOL_HEIGHT_M = 0.45  # of an assumed seat
 
 
 @dataclass(frozen=True, kw_only=True)
 class PlacedStep:
-    """A step of a plan with its moves over the floor and the height of the seat that it uses."""
+    """A step of a plan as placed in the room.
+
+    Attributes:
+        step: The scheduled step.
+        moves: Its moves over the floor.
+        seat_height_m: Height in metres of the seat that it uses.
+    """
 
     step: Step
     moves: tuple[Move, ...] = ()
@@ -36,20 +42,35 @@ class PlacedStep:
 
 @dataclass(kw_only=True)
 class StepContext:
-    """One step of the motion. `time_s` covers the whole motion, so that neighbouring steps can be blended."""
+    """One step of the motion, with the controls that its function changes.
+
+    Attributes:
+        time_s: Times (n,) of the whole motion in seconds, so that neighbouring steps can be blended.
+        step: The scheduled step.
+        body: Bone lengths.
+        path: Path of the root over the whole motion.
+        rng: Random stream of this step.
+        moves: Moves of the path that belong to this step.
+        seat_height_m: Height of the seat above the floor in metres.
+        first: Whether no step precedes: the motion is already under way at its start.
+        habits: Habits of the person.
+        last: Whether no step follows: the motion continues at its end.
+        arms_before: Whether the previous step holds the arms alike.
+        arms_after: Whether the next step holds the arms alike.
+    """
 
     time_s: PerTime
     step: Step
     body: SkeletonProportions
     path: RootPath
     rng: np.random.Generator
-    moves: tuple[Move, ...] = ()  # the moves of the path that belong to this step
+    moves: tuple[Move, ...] = ()
     seat_height_m: float = STOOL_HEIGHT_M
-    first: bool = True  # no step before: the motion is already under way at its start
+    first: bool = True
     habits: Habits = field(default_factory=Habits)
-    last: bool = True  # no step after: the motion continues at its end
-    arms_before: bool = False  # the step before holds the arms as this one does
-    arms_after: bool = False  # the step after holds the arms as this one does
+    last: bool = True
+    arms_before: bool = False
+    arms_after: bool = False
 
     def __post_init__(self) -> None:
         step = self.step
@@ -60,53 +81,76 @@ class StepContext:
 
     @cached_property
     def controls(self) -> Controls:
-        """The pose parameters that the activity changes: standing upright at first, for a gesture the posture's."""
+        """The pose parameters that the activity changes: initially upright; for a gesture those of the posture."""
         return upright(self)
 
     def stand(self) -> Controls:
-        """The controls; those of somebody upright are drawn now, before other random numbers."""
+        """Initializes the controls of an upright body before other random numbers are sampled."""
         return self.controls
 
-    # ---- what the sentence and the seed decide
+    # ---- decided by the sentence and the seed
 
     @property
     def fewest(self) -> int:
-        """The least number of repetitions where the sentence names none: 2 where it says "several times"."""
+        """Minimum number of repetitions if the sentence names none: 2 for "several times"."""
         return 2 if self.step.several else 1
 
     def by_speed(self, slow: float, usual: float, fast: float) -> float:
-        """One of three values, by the speed that the sentence names."""
+        """One of three values, by the speed in the sentence.
+
+        Args:
+            slow: Value for 'slowly'.
+            usual: Value by default.
+            fast: Value for 'quickly'.
+        """
         return (usual, fast, slow)[self.speed]
 
     def tempo(self, slow: float, usual: float, fast: float, spread: float = 0.1) -> float:
-        """A sampled rate: `slow` for 'slowly', `fast` for 'quickly', else `usual`; log-normal with `spread`."""
+        """Samples a rate, log-normal with `spread` and scaled by the person's pace.
+
+        Args:
+            slow: Rate for 'slowly'.
+            usual: Rate by default.
+            fast: Rate for 'quickly'.
+            spread: Twice the standard deviation of its logarithm.
+        """
         return self.by_speed(slow, usual, fast) * self.step.pace * float(np.exp(self.rng.normal(0.0, spread / 2)))
 
     def uniform(self, low: float, high: float) -> float:
-        """A number between two, by the seed."""
+        """Samples a number between two limits."""
         return float(self.rng.uniform(low, high))
 
     def sign(self) -> float:
-        """-1 or 1, by the seed."""
+        """Samples -1 or 1."""
         return float(self.rng.choice([-1.0, 1.0]))
 
     def vary(self, value: float, spread: float = 0.12) -> float:
-        """A size with log-normal variation, clipped at twice the spread, and with the person's habit."""
+        """Varies a size log-normally, clipped at twice the spread, and scales it by the person's habitual amplitude.
+
+        Args:
+            value: Usual size.
+            spread: Standard deviation of its logarithm.
+        """
         size = float(np.exp(np.clip(self.rng.normal(0, spread), -2 * spread, 2 * spread)))
         return value * self.habits.amplitude * size
 
     def wander(self, slow_hz: float, fast_hz: float) -> PerTime:
-        """`profiles.wander` at the times of the motion."""
+        """`profiles.wander` at the times of the motion.
+
+        Args:
+            slow_hz: Lowest frequency in Hz.
+            fast_hz: Highest frequency in Hz.
+        """
         return wander(self.time_s, self.rng, slow_hz=slow_hz, fast_hz=fast_hz)
 
     def sides(self) -> tuple[int, ...]:
-        """The arms that move: as the sentence says, else five times out of six the one that the person usually uses."""
+        """The arms that move: as stated, else with probability 5/6 the preferred one."""
         usual = self.step.usual_hand or "right"
         chosen = self.hand or (usual if self.rng.random() < 5 / 6 else {"right": "left"}.get(usual, "right"))
         return {"left": (LEFT,), "right": (RIGHT,), "both": BOTH}[chosen]
 
     def one_side(self) -> int:
-        """The one arm that moves; of both, the right."""
+        """The single arm that moves; the right one of both."""
         return self.sides()[-1]
 
     @property
@@ -120,12 +164,12 @@ class StepContext:
         return self.sides() if self.hand else BOTH
 
     def leg_side(self) -> int:
-        """The leg that moves: as the sentence says, else by the seed, the right one five times out of six."""
+        """The leg that moves: as stated, else sampled, the right one with probability 5/6."""
         chosen = self.foot or ("right" if self.rng.random() < 5 / 6 else "left")
         return LEFT if chosen == "left" else RIGHT
 
     def standing_path(self) -> RootPath:
-        """The path of a body that stays where the step begins, facing as it does then."""
+        """The path of a body that stays where the step begins, with its heading then."""
         before_s = np.array([self.start_s - 0.001])
         x, y = self.path.position_m(before_s)[0]
         return RootPath(start_m=(float(x), float(y)), heading_rad=float(self.path.facing_rad(before_s)[0]))
@@ -133,9 +177,15 @@ class StepContext:
     # ---- functions of time
 
     def repeats(self, natural_s: float, min_s: float, max_s: float, usual: int = 1) -> list[Span]:
-        """The repetitions: as many as the sentence asks for, else the usual number.
+        """Repetitions of a movement: the stated number, else the usual one.
 
-        Several without a number are two, or more where the time allows it.
+        Several without a number are two, or more if time permits.
+
+        Args:
+            natural_s: Natural duration of one repetition in seconds.
+            min_s: Minimum duration.
+            max_s: Maximum duration.
+            usual: Number of repetitions by default.
         """
         whole_body = self.step.several and not self.step.upper
         count = self.count or (max(2, int(self.duration_s / natural_s)) if whole_body else usual)
@@ -148,9 +198,15 @@ class StepContext:
     def in_turn(
         self, usual_s: float, min_s: float, max_s: float, *, fewest: int = 1, lag: float = 0.0, more: float = 0.0
     ) -> list[Span]:
-        """Repetitions that fill the step: as many as asked for, else as the time allows at `usual_s` each.
+        """Repetitions that fill the step: the stated number, else as many as time permits.
 
-        Each begins late by a share `lag`. `more` rounds their number otherwise than to the nearest.
+        Args:
+            usual_s: Usual duration of one repetition in seconds.
+            min_s: Minimum duration.
+            max_s: Maximum duration.
+            fewest: Minimum number of repetitions.
+            lag: Delay of each repetition as a share of its duration.
+            more: If not 0, added to the number that fits before it is rounded down; 0 rounds to the nearest.
         """
         fits = self.duration_s / usual_s
         count = self.count or max(fewest, int(fits + more) if more else round(fits))
@@ -158,7 +214,18 @@ class StepContext:
         return [Span(self.time_s, self.start_s + (k + lag) * each, each) for k in range(count)]
 
     def cycles(self, slow: float, usual: float, fast: float, low_hz: float, high_hz: float) -> tuple[float, float]:
-        """Rate (Hz) and end in seconds of a periodic movement; a count in the sentence sets the rate within limits."""
+        """Rate and end of a periodic movement; a count in the sentence sets the rate within limits.
+
+        Args:
+            slow: Rate in Hz for 'slowly'.
+            usual: Rate by default.
+            fast: Rate for 'quickly'.
+            low_hz: Minimum rate with a count.
+            high_hz: Maximum rate with a count.
+
+        Returns:
+            Rate in Hz, and end in seconds.
+        """
         rate_hz = self.tempo(slow, usual, fast)
         if not self.count:
             return rate_hz, self.end_s
@@ -166,19 +233,40 @@ class StepContext:
         return rate, self.start_s + self.count / rate
 
     def phase(self, rate_hz: float) -> PerTime:
-        """Phase in radians of a periodic movement that begins with the step."""
+        """Phase (n,) in radians of a periodic movement that begins with the step."""
         return 2 * np.pi * rate_hz * (self.time_s - self.start_s)
 
     def plateau(self, begin_s: float, end_s: float, up_s: float, down_s: float) -> PerTime:
-        """`profiles.plateau` at the times of the motion."""
+        """`profiles.plateau` at the times of the motion.
+
+        Args:
+            begin_s: Time at which the rise begins, seconds.
+            end_s: Time at which the fall ends, seconds.
+            up_s: Duration of the rise in seconds.
+            down_s: Duration of the fall in seconds.
+        """
         return plateau(self.time_s, begin_s, end_s, up_s, down_s)
 
     def since_start(self, low: float, slow: float, usual: float, fast: float, share: float) -> PerTime:
-        """Progress from 0 at the start to 1 after a share of the step, between `low` and a limit in seconds."""
+        """Progress (n,) from 0 at the start to 1 after a share of the step, not limited to 0 to 1.
+
+        Args:
+            low: Minimum duration in seconds.
+            slow: Maximum duration for 'slowly'.
+            usual: Maximum duration by default.
+            fast: Maximum duration for 'quickly'.
+            share: Duration as a share of the step.
+        """
         return (self.time_s - self.start_s) / np.clip(share * self.duration_s, low, self.by_speed(slow, usual, fast))
 
     def edges(self, up_s: float, down_s: float, after_s: float = 0.0) -> PerTime:
-        """1 within the step, rising from 0 at its start and falling at its end, unless the motion goes on there."""
+        """Window (n,): 1 within the step, rising at its start and falling at its end, unless the motion extends beyond.
+
+        Args:
+            up_s: Duration of the rise in seconds.
+            down_s: Duration of the fall in seconds.
+            after_s: Delay of the fall after the step's end.
+        """
         ones = np.ones_like(self.time_s)
         begin = ones if self.first else rise((self.time_s - self.start_s) / up_s)
         return begin if self.last else begin * rise((self.end_s + after_s - self.time_s) / down_s)
@@ -186,7 +274,13 @@ class StepContext:
     # ---- changes of the controls
 
     def add(self, curve: Curve, side: int | None = None, /, **gains: Curve) -> None:
-        """Adds gain times curve to channels (`controls.CHANNELS`), of one side or of both where a channel has two."""
+        """Adds a curve times a gain to channels of the controls.
+
+        Args:
+            curve: Function of time (n,), or a constant.
+            side: LEFT or RIGHT; None for both if a channel has two.
+            **gains: Gain by channel, see `controls.CHANNELS`.
+        """
         for name, gain in gains.items():
             array, index = CHANNELS[name]
             values = getattr(self.controls, array)
@@ -199,19 +293,40 @@ class StepContext:
             values += change
 
     def keyed(self, u: PerTime, movement: str, part: str, gain: Number = 1, side: int | None = None) -> None:
-        """Adds a part's keyframes (`movements.toml`) to channels, over a progress u (n,)."""
+        """Adds the keyframes of a part of a movement to channels.
+
+        Args:
+            u: Progress (n,).
+            movement: Name in `movements.toml`.
+            part: Table of the part.
+            gain: Factor of the keyframes.
+            side: LEFT or RIGHT; None for both.
+        """
         for channel, values in MOVEMENTS[movement][part].items():
             self.add(spline_through(u, MOVEMENTS[movement]["at"], values), side, **{channel: gain})
 
     def pelvis(self, ahead: Curve = 0.0, left: Curve = 0.0, up: Curve = 0.0) -> None:
-        """Moves the pelvis ahead, to the body's left, and up; metres, (n,) or constant."""
+        """Moves the pelvis in the body's own frame.
+
+        Args:
+            ahead: Metres ahead, (n,) or constant.
+            left: Metres to the body's left.
+            up: Metres up.
+        """
         cos, sin = np.cos(self.controls.heading_rad), np.sin(self.controls.heading_rad)
         self.controls.pelvis_m[:, 0] += ahead * cos - left * sin
         self.controls.pelvis_m[:, 1] += ahead * sin + left * cos
         self.controls.pelvis_m[:, 2] += up
 
     def move_foot(self, side: int, ahead: Curve = 0.0, out: Curve = 0.0, up: Curve = 0.0) -> None:
-        """Moves a foot ahead, outward and up; metres, (n,) or constant."""
+        """Moves a foot in the body's own frame.
+
+        Args:
+            side: LEFT or RIGHT.
+            ahead: Metres ahead, (n,) or constant.
+            out: Metres outward.
+            up: Metres up.
+        """
         cos, sin = np.cos(self.controls.heading_rad), np.sin(self.controls.heading_rad)
         left = OUTWARD[side] * out
         self.controls.foot_m[:, side, 0] += ahead * cos - left * sin
@@ -219,21 +334,36 @@ class StepContext:
         self.controls.foot_m[:, side, 2] += up
 
     def bend_knees(self, room: Curve) -> None:
-        """Keeps at least so much room for bent knees, 0 to 1."""
+        """Ensures a minimum of room for bent knees, 0 to 1, (n,) or constant."""
         self.controls.knee_room[:] = np.maximum(self.controls.knee_room, room)
 
     def lift_weight(self, side: int, air: PerTime) -> None:
-        """Takes the weight off a foot as `air` (n,) goes to 1; both knees bend slightly."""
+        """Unloads a foot; both knees bend slightly.
+
+        Args:
+            side: LEFT or RIGHT.
+            air: 0 to 1 (n,): 1 unloads it completely.
+        """
         self.add(air, side, contact=-1)
         self.bend_knees(0.8 * air)
 
     def lean_over(self, side: int, share: PerTime) -> None:
-        """Shifts the body over one foot as `share` (n,) goes to 1; the trunk stays upright."""
+        """Shifts the body over one foot; the trunk stays upright.
+
+        Args:
+            side: LEFT or RIGHT.
+            share: 0 to 1 (n,): 1 is over the foot.
+        """
         self.pelvis(left=OUTWARD[side] * 0.043 * self.height_m * share)
         self.add(share, spine_roll=-OUTWARD[side] * 0.05)
 
     def crouch(self, depth: PerTime, lean_rad: float) -> None:
-        """Lowers the body by a share (n,) of the deepest squat: hips back, trunk forward, knees over the feet."""
+        """Lowers the body: hips back, trunk forward, knees over the feet.
+
+        Args:
+            depth: Share (n,) of the deepest squat.
+            lean_rad: Forward lean of the trunk at full depth, radians.
+        """
         body, knee, back = self.body, np.radians(118.0), 0.12 * self.height_m
         leg = np.sqrt(body.thigh_m**2 + body.shank_m**2 + 2 * body.thigh_m * body.shank_m * np.cos(knee))
         low = body.ankle_height_m + np.sqrt(leg**2 - back**2) + 0.95 * body.hip_below_pelvis_m
@@ -243,20 +373,40 @@ class StepContext:
         )
 
     def arm(self, angles: Sequence[Number] | Float[np.ndarray, "n 4"], weight: Curve = 1.0, *sides: int) -> None:
-        """Blends arms, both by default, to angles of flexion, abduction, twist and elbow as `weight` (n,) goes to 1."""
+        """Blends arms to given angles.
+
+        Args:
+            angles: Flexion, abduction, twist and elbow flexion in radians, (4,) or (n, 4).
+            weight: 0 keeps the arms, 1 replaces their angles; (n,) or constant.
+            *sides: LEFT or RIGHT; none for both.
+        """
         for side in sides or BOTH:
             mix_arm(self.controls, side, np.asarray(angles), weight)
 
     def hand_to(
         self, side: int | tuple[int, ...], target: Place, weight: Curve = 1.0, elbow: Sequence[float] | None = None
     ) -> None:
-        """Brings wrists to a place in body heights: ahead, outward and up of spine3 in the chest's frame."""
+        """As `hand_to_m`, with the target in body heights.
+
+        Args:
+            side: LEFT, RIGHT, or several.
+            target: Ahead, outward and up of spine3 in the chest's frame, body heights; curves, or (n, 3).
+            weight: As in `hand_to_m`.
+            elbow: As in `hand_to_m`.
+        """
         self.hand_to_m(side, self._points(target) * self.height_m, weight, elbow)
 
     def hand_to_m(
         self, side: int | tuple[int, ...], target: Place, weight: Curve = 1.0, elbow: Sequence[float] | None = None
     ) -> None:
-        """The same in metres; elbows point as `elbow` says, else as the gesture's record in `movements.toml`."""
+        """Brings wrists to a position by inverse kinematics.
+
+        Args:
+            side: LEFT, RIGHT, or several.
+            target: Ahead, outward and up of spine3 in the chest's frame, metres; curves, or (n, 3).
+            weight: 0 keeps the arms, 1 reaches the target; (n,) or constant.
+            elbow: Direction of the elbow in the same axes; None takes the gesture's record in `movements.toml`.
+        """
         elbow = elbow or MOVEMENTS.get(self.step.upper, {}).get("elbow", (-0.3, 0.5, -1.0))
         self.arm(reach(self.body, self._points(target), elbow), weight, *(side if isinstance(side, tuple) else (side,)))
 
@@ -266,7 +416,14 @@ class StepContext:
         return np.stack([np.broadcast_to(np.asarray(part, float), self.time_s.shape) for part in target], axis=1)
 
     def mouth_m(self, side: int) -> Float[np.ndarray, "n 3"]:
-        """Place (n, 3) in metres of the mouth for an arm: ahead, outward and up of spine3 in the chest's frame."""
+        """Position of the mouth for an arm.
+
+        Args:
+            side: LEFT or RIGHT.
+
+        Returns:
+            Ahead, outward and up of spine3 in the chest's frame, metres, (n, 3).
+        """
         head_rad = self.controls.head_rad
         half = rotation_z(head_rad[:, 1] / 2) @ rotation_y(head_rad[:, 0] / 2)
         head = self.body.offset_m[joint("neck")] + rotated(half, self.body.offset_m[joint("head")])
@@ -279,7 +436,12 @@ Animate = Callable[[StepContext], None]
 
 
 def posture(key: str, *, stands: bool = True) -> Callable[[Animate], Animate]:
-    """Registers the function of a body activity; it starts from `controls` upright, drawn first if it `stands`."""
+    """Registers the function of a body activity.
+
+    Args:
+        key: Key of the activity.
+        stands: Whether the upright controls are sampled before the function runs.
+    """
 
     def register(animate: Animate) -> Animate:
         def perform(act: StepContext) -> Controls:
@@ -295,7 +457,11 @@ def posture(key: str, *, stands: bool = True) -> Callable[[Animate], Animate]:
 
 
 def gesture(key: str) -> Callable[[Animate], Animate]:
-    """Registers the function of a hand activity, which changes arms, trunk and head of the posture's `controls`."""
+    """Registers the function of a hand activity, which changes arms, trunk and head of the posture's `controls`.
+
+    Args:
+        key: Key of the activity.
+    """
 
     def register(animate: Animate) -> Animate:
         def perform(act: StepContext, controls: Controls) -> Controls:

@@ -1,1 +1,1 @@
-"""A sentence becomes a plan: steps with activities, directions, counts and times."""
+"""Parses a sentence into a plan: steps with activities, directions, counts and times."""

@@ -1,4 +1,4 @@
-"""What a body and its hands can do: one record per activity, in `activities.toml`."""
+"""The activities of body and hands: one record per activity, in `activities.toml`."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,21 +9,37 @@ from mmweaver.core.safe_files.safe_text import read_toml
 
 @dataclass(frozen=True, kw_only=True)
 class Activity:
-    """One activity. A body activity moves legs and trunk, a hand activity is overlaid on one."""
+    """One activity. A body activity moves legs and trunk, a hand activity is overlaid on one.
+
+    Attributes:
+        key: Key in `activities.toml`.
+        name: As in "walking and waving".
+        example: Sentence that names it.
+        shown: Description of a step if the name is too short, with {hand}, {arm}, {leg}, {foot}.
+        least_s: Minimum duration in seconds.
+        natural_s: Natural duration in seconds.
+        once: Whether it takes its natural time; spare time goes to other steps.
+        counted_s: Minimum and natural duration of one repetition, and extra time at start and end.
+        clearance_m: Free floor around the body in metres.
+        moves: Whether it changes the position on the floor.
+        hands: Whether it is a hand activity.
+        posture: Support of the body at its end: feet, seat, couch, knees or floor.
+        uses_seat: Whether it needs a seat, bed or couch.
+    """
 
     key: str
-    name: str  # as in "walking and waving"
+    name: str
     example: str
-    shown: str = ""  # what a step of it shows, where the name does not say it, with {hand}, {arm}, {leg}, {foot}
-    least_s: float  # shortest time in which it can be shown
+    shown: str = ""
+    least_s: float
     natural_s: float
-    once: bool = False  # takes its natural time; time that is left goes to other steps
-    counted_s: tuple[float, float, float] | None = None  # of one repetition: least, natural; extra at start and end
-    clearance_m: float = 0.5  # free floor around the body
-    moves: bool = False  # changes the position on the floor
+    once: bool = False
+    counted_s: tuple[float, float, float] | None = None
+    clearance_m: float = 0.5
+    moves: bool = False
     hands: bool = False
-    posture: str = "feet"  # what the body rests on at its end: feet | seat | couch | knees | floor
-    uses_seat: bool = False  # needs a seat, bed or couch
+    posture: str = "feet"
+    uses_seat: bool = False
 
 
 def words_in(text: str) -> frozenset[str]:
@@ -32,7 +48,7 @@ def words_in(text: str) -> frozenset[str]:
 
 
 ACTIVITY_OF_LEMMA: dict[str, tuple[str, str]] = {}  # verb -> (lower, upper) of a Step
-PARAPHRASES: dict[str, tuple[str, ...]] = {}  # with which unknown clauses are compared to make a suggestion
+PARAPHRASES: dict[str, tuple[str, ...]] = {}  # compared with unknown clauses for suggestions
 
 
 def _activity(key: str, record: dict[str, Any], *, hands: bool) -> Activity:
@@ -51,7 +67,7 @@ CLEARANCE_M: dict[str, float] = {key: activity.clearance_m for key, activity in 
 
 
 def known() -> str:
-    """All names, separated by commas, for messages.
+    """Names of all activities, separated by commas, for messages.
 
     >>> known().count(", ") > 50
     True

@@ -1,4 +1,4 @@
-"""The clause of each word of the sentence as it was given, by aligning it with the clauses after rewriting."""
+"""Aligns the words of the original sentence with the clauses after rewriting."""
 
 import re
 from collections.abc import Mapping
@@ -10,7 +10,7 @@ from mmweaver.motion.language.plan import ClauseRecord
 
 TOKEN = re.compile(r"[a-z]+(?:'[a-z]+)?|\d+(?:\.\d+)?|[,.;:_]+")
 SEPARATORS = words_in(", . ; : and then while before after until")
-_STEM = 4  # letters by which words are aligned: "twists" and "twist"
+_STEM = 4  # letters compared: "twists" and "twist"
 _SMALL = SEPARATORS | words_in(
     "a an the to of in on at as for from by with into this that his her their its is are was he she it they person man"
 )
@@ -20,7 +20,15 @@ Records = Mapping[int, ClauseRecord]
 
 
 def clause_of_each(tokens: list[str], records: Records) -> tuple[list[int], list[bool]]:
-    """The number of the clause that each token stands in, and whether that clause still has it after rewriting."""
+    """Assigns each token of the original sentence to a clause.
+
+    Args:
+        tokens: Tokens of the sentence, in lower case.
+        records: Record of each clause by its number.
+
+    Returns:
+        Number of the clause of each token, and whether that clause still contains it after rewriting.
+    """
     words = [(word, number) for number, record in sorted(records.items()) for word in record.clause.split()]
     words = [(word, number) for word, number in words if word not in _SMALL]
     places = [i for i, token in enumerate(tokens) if token not in _SMALL]
@@ -46,7 +54,7 @@ def clause_of_each(tokens: list[str], records: Records) -> tuple[list[int], list
 def _wholly_rewritten(
     tokens: list[str], numbers: list[int], kept: list[bool], records: Records
 ) -> list[tuple[int, list[int]]]:
-    """Clauses of which no word is left, with the places of the words between two links that no other clause has."""
+    """Clauses without any original word, with the positions between two links that no other clause has."""
     parts: list[list[int]] = [[]]
     for place, token in enumerate(tokens):
         if token in _LINKS:
@@ -59,9 +67,14 @@ def _wholly_rewritten(
 
 
 def given_words(text: str, records: Records) -> dict[int, str]:
-    """The sentence's own words of each clause, whose record may hold what they were rewritten as.
+    """The original words of each clause, whose record may hold what they were rewritten to.
 
-    Words that do not stand together are joined by an ellipsis. A clause that rewriting has added has none.
+    Args:
+        text: The sentence.
+        records: Record of each clause by its number.
+
+    Returns:
+        Words by clause number, joined by an ellipsis if not contiguous; "" for a clause added by rewriting.
     """
     found = list(TOKEN.finditer(text.lower()))
     tokens = [one[0] for one in found]
@@ -84,7 +97,7 @@ def given_words(text: str, records: Records) -> dict[int, str]:
 
 
 def _part_numbers(tokens: list[str], records: Records) -> list[int]:
-    """The number of the clause of each token where the sentence has as many parts between links as clauses; else []."""
+    """Clause number of each token if the sentence has as many parts between links as clauses; else []."""
     numbers, part, is_open = [], -1, False
     for token in tokens:
         if token in _LINKS:

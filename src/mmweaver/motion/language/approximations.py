@@ -1,4 +1,4 @@
-"""Movements that are shown as similar ones: tried where a sentence is not understood, and said as approximated.
+"""Movements shown as similar ones: tried if a sentence is not understood, and reported as approximated.
 
 The rows are in `approximations.toml`.
 """
@@ -15,19 +15,19 @@ from mmweaver.motion.language.rewrite_rules import expand_parts
 _ALWAYS, _IN_PART = ("instead_of_another", "always"), ("in_part",)
 MARK = "approx_"
 _IN_TURN = "in turn"  # the fourth column of a row
-_THESE = "THESE"  # in what is said: the words of the sentence that were replaced
+_THESE = "THESE"  # placeholder in the report for the words replaced
 
 
 @dataclass(frozen=True)
 class Approximation:
-    """A pattern of the sentence, the words that are acted out instead, and how that is said."""
+    """A pattern of the sentence, the replacement that is acted out, and how it is reported."""
 
     pattern: str
     instead: str
     how: str
-    always: bool = False  # also where the sentence would be understood, but as something else
-    in_part: bool = False  # only where a sentence may be read in part
-    in_turn: bool = False  # two movements for one, shown one after the other
+    always: bool = False  # applied even if the sentence would be understood, but wrongly
+    in_part: bool = False  # only if a sentence may be parsed in part
+    in_turn: bool = False  # two movements instead of one, shown one after the other
 
 
 _TABLE = read_toml(Path(__file__).with_suffix(".toml"))
@@ -42,7 +42,7 @@ _HELD = re.compile(r"<(\d+)>(?: +for (\d+(?:\.\d+)?) seconds\b)?")
 
 @cache
 def _pattern(number: int) -> re.Pattern[str]:
-    """Compiled when first tried: most sentences need few of them, and all take 0.1 CPU-s."""
+    """Compiled on first use: most sentences need few of them, and all take 0.1 s of CPU time."""
     return re.compile(expand_parts(APPROXIMATIONS[number].pattern, _TABLE["parts"]))
 
 
@@ -61,9 +61,16 @@ def apply_approximations(
     in_part: bool = False,
     is_understood: Callable[[str], bool] = lambda part: False,
 ) -> str:
-    """The sentence with what is known instead of what is not; a token after each replacement says which it was.
+    """Replaces unknown movements by similar known ones, each followed by a token that identifies the row.
 
-    `is_understood`: parts of the sentence, between two connectives, in which nothing is replaced.
+    Args:
+        text: The sentence.
+        only_always: Applies only the rows marked `always`.
+        in_part: Applies also the rows marked `in_part`.
+        is_understood: Tells whether a part between two connectives is understood; nothing is replaced in such parts.
+
+    Returns:
+        The sentence with replacements; `text` itself if there are none.
     """
     folded = text.lower()
     held: list[str] = []  # replacements, kept out of the text until all patterns have been tried
@@ -94,7 +101,7 @@ def _says_what_is_done_meanwhile(found: re.Match[str], instead: str) -> bool:
 
 
 def _in_turn(replacement: str, seconds: str | None) -> str:
-    """A replacement, each of whose movements takes an equal share of the seconds that the sentence gives, if any."""
+    """A replacement, each of whose movements takes an equal share of the stated seconds, if any."""
     if not seconds:
         return replacement
     words, _, mark = replacement.rpartition(f" {MARK}")
@@ -118,7 +125,14 @@ def _filled(found: re.Match[str], instead: str) -> str:
 
 
 def approximation_of(token: str) -> tuple[str, bool]:
-    """What a token of `apply_approximations` says, and whether that is that movements are shown one after the other."""
+    """Report of an approximation.
+
+    Args:
+        token: Token of `apply_approximations`.
+
+    Returns:
+        What is shown instead, and whether movements are shown one after the other.
+    """
     words, _, number = token.removeprefix(MARK).rpartition("_")
     one = APPROXIMATIONS[int(number)]
     return one.how.replace(_THESE, repr(words.replace("_", " "))), one.in_turn

@@ -1,4 +1,4 @@
-"""From a clause to its steps: its verbs, and their direction, hand, speed, count and seat."""
+"""Parses a clause into its steps: its verbs, and their direction, hand, speed, count and seat."""
 
 import re
 from dataclasses import replace
@@ -44,7 +44,17 @@ from mmweaver.motion.language.words import Word
 
 
 def parse_clause(clause: Clause) -> ParsedClause:
-    """Parses verbs and modifiers; raises InputError for what would be acted out as something else."""
+    """Parses verbs and modifiers of a clause.
+
+    Args:
+        clause: The clause; tokens of places and approximations are removed from its words.
+
+    Returns:
+        Steps, and modifiers of a clause without a verb.
+
+    Raises:
+        InputError: If the clause is not understood, or would be acted out as something else.
+    """
     words = clause.words
     parsed = ParsedClause(clause.link, clause.text, number=clause.number, words=words)
     marked = [word.text for word in words if word.text.startswith(MARK)]
@@ -100,7 +110,7 @@ def parse_clause(clause: Clause) -> ParsedClause:
 
 
 def _put_at(parsed: ParsedClause, place: Place) -> None:
-    """Gives a place to the clause's last step: where it is done, or where or how far a walk goes."""
+    """Assigns a place to the clause's last step: where it is done, or the destination or length of a walk."""
     last = parsed.steps[-1]
     how = {"against": "the wall is not touched", "in": "is shown just before the door" * (place.landmark == "door")}
     if how.get(place.relation):
@@ -138,7 +148,7 @@ _OF_THEM = re.compile(r"(?<!side)(?<!sides)(?<!front)(?<!ahead) of them\b")
 
 
 def _refuse(clause: Clause) -> None:
-    """Raises InputError for negations, several people, animals, and movements that are not known."""
+    """Raises InputError for negations, several people, animals, and unknown movements."""
     texts = {word.text for word in clause.words}
     still = texts & {"moving", "movement", "motion"} and texts & {"without", "not", "no"}
     if texts & NEGATIONS and not still:
@@ -154,7 +164,7 @@ def _refuse(clause: Clause) -> None:
 
 
 def _harmless(word: Word, texts: set[str], lemmas: set[str]) -> bool:
-    """Whether a word that may mean an unknown movement means none next to the clause's verbs."""
+    """Whether a word that may name an unknown movement does not, given the clause's verbs."""
     if word.text in LEGS and lemmas & LEG_VERBS:
         return True
     if word.text in ("over", "legs", "leg", "foot", "knees", "knee", "head", "shoulder", "shoulders"):
@@ -178,9 +188,9 @@ _OF_THE_BODY = frozenset({"waist", "hips", "torso", "trunk", "shoulders", "head"
 
 
 def _verbs(words: list[Word], *, is_placed: bool) -> list[int]:
-    """Places of the words that name an activity; light verbs and nouns that only repeat a verb are left out.
+    """Positions of the words that name an activity, without light verbs and nouns that repeat a verb.
 
-    `is_placed`: the clause names a place to go to.
+    `is_placed`: the clause names a destination.
     """
     found: list[int] = []
     texts = {word.text for word in words}
@@ -191,7 +201,7 @@ def _verbs(words: list[Word], *, is_placed: bool) -> list[int]:
         if word.lemma == "reach" and after in ("the", "his", "her", "its", "their"):
             continue  # "reaches the end"
         if word.lemma == "move" and (texts & ARMS or texts & _OF_THE_BODY or after in _IT):
-            continue  # it is the arm that moves, and how is not known
+            continue  # the arm moves in an unknown way
         goes_somewhere = is_placed or bool(texts & {*DIRECTIONS, *RADAR, *SEATS, *TARGETS})
         if (word.is_going and goes_somewhere) or (word.is_activity and not _is_noun(words, i, found)):
             found.append(i)
@@ -252,7 +262,7 @@ def _is_plain_noun(word: Word, before: str, *, after_a_verb: bool) -> bool:
 
 
 def _is_the_face(words: list[Word], i: int) -> bool:
-    """Whether "face" is the part of the body: nothing that can be faced follows, or a hand is put to it."""
+    """Whether "face" is the part of the body: nothing that can be faced follows, or a hand touches it."""
     before, after = words[i - 1].text if i else "", words[i + 1].text if i + 1 < len(words) else ""
     put = before == "to" and i > 1 and words[i - 2].text in ("it", "them", "something", "hand", "hands")
     aimed = after in _FACED or after in DIRECTIONS or after in OWN
@@ -304,7 +314,7 @@ def _subject(words: list[Word]) -> str:
 
 
 def _unknown_manner(words: list[Word]) -> str:
-    """An unknown word for how or what is done: 'in a pentagon', 'performs capoeira'; "" if there is none."""
+    """An unknown word for a manner or an action: 'in a pentagon', 'performs capoeira'; "" if there is none."""
     for i, word in enumerate(words):
         if is_known(word) or not word.text[:1].isalpha():
             continue
@@ -331,7 +341,7 @@ _KNOWN = frozenset().union(
 
 
 def is_known(word: Word) -> bool:
-    """Whether a word has a meaning, or none that matters, in a sentence about a movement."""
+    """Whether a word has a known meaning, or none that matters, in a sentence about a movement."""
     text = word.text
     is_token = text.startswith((AIM, "arc", "deg", "from_", "on_", "fraction_", "rounds_")) or len(text) == 1
     return word.is_verb or text in _KNOWN or is_token or text.replace(".", "").isdigit()

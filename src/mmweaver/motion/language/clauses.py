@@ -1,4 +1,4 @@
-"""Splits a sentence into clauses, each with its temporal relation to the one before."""
+"""Splits a sentence into clauses, each with its temporal relation to the previous one."""
 
 import re
 from dataclasses import dataclass, field
@@ -17,11 +17,17 @@ SUBJECTS = PRONOUNS | MANY | {"the", "a", "person", "man", "woman", "user", "his
 
 @dataclass
 class Clause:
-    """Words between two connectives; `link` is the relation: first, then, and, comma, before, after, while."""
+    """Words between two connectives.
+
+    Attributes:
+        link: Relation to the previous clause: first, then, and, comma, before, after, while.
+        words: Words of the clause.
+        number: Position in the sentence's own order.
+    """
 
     link: str
     words: list[Word] = field(default_factory=list)
-    number: int = 0  # in the sentence's own order
+    number: int = 0
 
     @property
     def text(self) -> str:
@@ -32,7 +38,14 @@ class Clause:
 
 
 def split_clauses(words: list[Word]) -> list[Clause]:
-    """Splits at connectives and puts clauses into temporal order ("Before B, A" and "B after A" are reordered)."""
+    """Splits words at connectives and orders the clauses in time ("Before B, A" and "B after A" are reordered).
+
+    Args:
+        words: Words of the sentence.
+
+    Returns:
+        Clauses in temporal order, numbered in the sentence's order.
+    """
     clauses = _split(words)
     for number, clause in enumerate(clauses):
         clause.number = number
@@ -50,14 +63,14 @@ def _split(words: list[Word]) -> list[Clause]:
         else:  # several connectives in a row: ", and then" is then; ", while" is while
             clauses[-1].link = _stronger(clauses[-1].link, link)
     if not clauses[-1].words:
-        if len(clauses) > 1 and clauses[-1].link == "while":  # "... at the same time": the last two go together
+        if len(clauses) > 1 and clauses[-1].link == "while":  # "... at the same time": joins the last two
             clauses[-2].link = "while" if len(clauses) > 2 else clauses[-2].link
         clauses.pop()
     return clauses
 
 
 def _link(words: list[Word], i: int) -> str:
-    """The connective that word `i` is in its context, or ""."""
+    """The connective that word `i` represents in its context, or ""."""
     text = words[i].text
     following = words[i + 1].text if i + 1 < len(words) else ""
     if text in STOPS or text in THEN:

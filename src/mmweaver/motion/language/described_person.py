@@ -1,4 +1,4 @@
-"""Who does it: sex, age, stature and build, where the sentence says so."""
+"""The person described by a sentence: sex, age, stature and build."""
 
 import re
 from dataclasses import dataclass
@@ -59,33 +59,40 @@ _HEIGHTS = (
     re.compile(rf"(?<=[a-z]) is {_LENGTH.format(3)} tall(?:,? and\b)"),
 )
 _WORDS = {"one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7}
-PACE = {"old": 0.75, "toddler": 0.6, "baby": 0.5}  # of walking, relative to the usual one
+PACE = {"old": 0.75, "toddler": 0.6, "baby": 0.5}  # walking pace relative to the usual one
 PACE_ON_THE_SPOT = {"old": 0.75, "child": 1.15, "toddler": 1.2, "baby": 1.2}
 _PRONOUN = re.compile(r"\b(he|she|his|her|himself|herself)\b")
 
 
 @dataclass(frozen=True, kw_only=True)
 class DescribedPerson:
-    """What a sentence says of its person; "" and 0 where it says nothing."""
+    """Traits of the person in a sentence; "" and 0 if not stated."""
 
     words: str = ""  # of the sentence
     sex: str = ""  # female | male
     age: str = ""  # baby | toddler | child | teenager | old
     stature: int = 0  # -2 a dwarf, -1 short, 1 tall, 2 a giant
     build: int = 0  # -1 slim, 1 heavy
-    height_m: float = 0.0  # where it is stated
+    height_m: float = 0.0  # if stated
 
     @property
     def is_described(self) -> bool:
         return bool(self.sex or self.age or self.stature or self.build or self.height_m)
 
     def pace(self, *, moves: bool) -> float:
-        """The tempo of people as described, relative to the usual one, under way or on the spot."""
+        """Tempo relative to the usual one.
+
+        Args:
+            moves: Whether the person moves over the floor; otherwise on the spot.
+        """
         return (PACE if moves else PACE_ON_THE_SPOT).get(self.age, 1.0)
 
 
 def described_person(text: str) -> DescribedPerson:
-    """The person of a sentence: of its first noun for a person with its adjectives, else of its first pronoun.
+    """Traits of a sentence's person, from its first noun for a person with its adjectives, else its first pronoun.
+
+    Args:
+        text: The sentence.
 
     >>> described_person("a tall old woman walks")
     DescribedPerson(words='tall old woman', sex='female', age='old', stature=1, build=0, height_m=0.0)
@@ -118,7 +125,10 @@ def described_person(text: str) -> DescribedPerson:
 
 
 def strip_stature(text: str) -> str:
-    """The sentence without what says how tall its person is, which is shown by the body and by no step.
+    """Removes the description of the person's height, which the body shows and no step.
+
+    Args:
+        text: The sentence.
 
     >>> strip_stature("a 1.6 m tall man waves to a small boy")
     'a man waves to a small boy'
@@ -141,7 +151,7 @@ def _person(text: str) -> re.Match[str] | None:
 
 
 def _strip_height(text: str) -> tuple[str, float, tuple[str, str]]:
-    """The sentence without a height next to its person's noun; its metres, and its words before and after that."""
+    """The sentence without a height next to its person's noun; the metres; and its words before and after the noun."""
     for number, pattern in enumerate(_HEIGHTS):
         for found in pattern.finditer(text):
             person = _person(text[: found.start()])

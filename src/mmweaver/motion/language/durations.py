@@ -1,4 +1,4 @@
-"""Durations in words as a number of seconds: 'one minute and a half', 'half an hour', 'a minute and 20 seconds'."""
+"""Converts durations in words to seconds: 'one minute and a half', 'half an hour', 'a minute and 20 seconds'."""
 
 import re
 
@@ -32,7 +32,13 @@ _VAGUE = {"a couple of": 2.0, "a couple": 2.0, "a few": 3.0, "several": 3.0}
 
 
 def durations_in_seconds(text: str) -> str:
-    """The sentence with each duration as a number of seconds; the sentence itself where there is none.
+    """Replaces each duration of a sentence by a number of seconds.
+
+    Args:
+        text: The sentence.
+
+    Returns:
+        The sentence; `text` itself if it has no duration.
 
     >>> durations_in_seconds("waves for one minute and a half, then rests for half an hour")
     'waves for 90 seconds, then rests for 1800 seconds'
@@ -57,13 +63,13 @@ def durations_in_seconds(text: str) -> str:
 
 
 def _goes_on(before: re.Match[str], after: re.Match[str], text: str) -> bool:
-    """Whether a part says more of the same duration: 'one minute' and '20 seconds'."""
+    """Whether a part continues the same duration: 'one minute' and '20 seconds'."""
     is_joined = _JOINT.fullmatch(text[before.end() : after.start()]) is not None
     return is_joined and _unit_s(after) < _unit_s(before)
 
 
 def _is_duration(text: str, first: re.Match[str], last: re.Match[str]) -> bool:
-    """Whether it is no point in time ('two seconds later') and no ordinal number ('a second time')."""
+    """Whether it is neither a point in time ('two seconds later') nor an ordinal number ('a second time')."""
     number = (first["number"] or "").lower()
     is_article = number in ("a", "an", "another") and first is last and not first["after"]
     is_article = is_article and _unit_s(first) == 1.0

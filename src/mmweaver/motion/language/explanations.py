@@ -1,4 +1,4 @@
-"""The record of every clause: what of it no step shows, and what it is shown as, in the sentence's own words."""
+"""Explains every clause: what its steps do not show and what it is shown as, in the sentence's own words."""
 
 import re
 from collections.abc import Sequence
@@ -30,9 +30,16 @@ _ALIKE = {  # one limb either way; a knee is not kneeling
 
 
 def add_explanations(records: Sequence[ClauseRecord], steps: Sequence[Step], *, roughly: bool) -> list[ClauseRecord]:
-    """The records with what each is shown as, done or not, where its words do not say just that.
+    """Adds to each record what its clause is shown as, unless its words state exactly that.
 
-    Of a sentence that is read `roughly` no clause is done whose words do not say what is shown.
+    Args:
+        records: Records of the clauses.
+        steps: Final steps.
+        roughly: Whether the sentence was parsed roughly; clauses whose words differ from what is shown are then lowered
+            to approximated.
+
+    Returns:
+        The records with explanations.
     """
     of_each = steps_of_each(len(records), steps)
     records = [_partly_done(record) if own else record for record, own in zip(records, of_each, strict=True)]
@@ -60,20 +67,20 @@ def add_explanations(records: Sequence[ClauseRecord], steps: Sequence[Step], *, 
 
 
 def _goes_on(record: ClauseRecord, own: Sequence[Step], before: ClauseRecord, steps: Sequence[Step]) -> bool:
-    """Whether a clause only says with which limb or which way the movement goes on whose record says what is shown."""
+    """Whether a clause only states the limb or direction with which the movement explained before continues."""
     words = _stems(record.clause) - _NO_WORDS
     same = {(step.lower, step.upper) for step in own} & {(step.lower, step.upper) for step in steps}
     return "is shown as" in before.how and bool(words and same) and words <= _OF_NUMBERS | _OF_SIDES
 
 
 def _is_another(record: ClauseRecord) -> bool:
-    """Whether a movement is shown as another one, no word for it being the same: "scratches", "waving"."""
+    """Whether a movement is shown as another one, without any word in common: "scratches", "waving"."""
     alike = _stems(record.clause) & _stems(record.shown)
     return record.status == APPROXIMATED and alike <= _NO_WORDS | _OF_NUMBERS | _OF_SIDES
 
 
 def _partly_done(record: ClauseRecord) -> ClauseRecord:
-    """The record of a clause that has steps; of one that is not done, a part is that patterns have made a clause of."""
+    """Record of a clause that has steps; if it is not done, patterns have made a clause of a part of it."""
     if record.status != NOT_DONE:
         return record
     hows = ["a part of it is not done" if how.startswith("no activity") else how for how in record.how.split("; ")]
@@ -81,7 +88,7 @@ def _partly_done(record: ClauseRecord) -> ClauseRecord:
 
 
 def _is_within(how: str, shown: str) -> bool:
-    """Whether a reason is only what something is shown as, and that is what is shown."""
+    """Whether a reason only states what something is shown as, and the description contains it."""
     found = _SHOWN_AS.fullmatch(how)
     if found is None:
         return False
@@ -90,7 +97,7 @@ def _is_within(how: str, shown: str) -> bool:
 
 
 def _merged_reasons(hows: list[str]) -> list[str]:
-    """Reasons without those that only say again which words are not shown; all that is not shown in one reason."""
+    """Reasons without repetitions of words that are not shown; all such words are listed in one reason."""
     lost = [words for how in hows if (found := _LOST.fullmatch(how)) for words in re.findall("'([^']+)'", found[1])]
     others = [how for how in dict.fromkeys(hows) if not _LOST.fullmatch(how)]
     said = _stems(" ".join(others))
@@ -112,9 +119,9 @@ def _stems(text: str) -> set[str]:
 
 
 def _says(record: ClauseRecord, own: Sequence[Step]) -> bool:
-    """Whether the words of a clause and what it is shown as say the same: 'she kneels down', 'kneeling down'.
+    """Whether the words of a clause and what it is shown as are equivalent: 'she kneels down', 'kneeling down'.
 
-    Sides, ways, counts and postures are compared both ways; one movement has no order. The words for a seat or a
+    Sides, directions, counts and postures are compared both ways; one movement has no order. Words for a seat or a
     landmark are free.
     """
     said, seen = _stems(record.clause) - _NO_WORDS, _stems(record.shown)
@@ -136,7 +143,7 @@ def _numbers(text: str) -> set[float]:
 
 
 def _where(step: Step) -> tuple[str, ...]:
-    """The Landmark.kinds that a step goes to, is done at or faces."""
+    """The kinds of landmarks that a step goes to, is done at or faces."""
     return step.target, step.facing, *(() if step.place is None else step.place.words.split())
 
 
@@ -156,7 +163,14 @@ _WORSE = (DONE, APPROXIMATED, NOT_DONE)
 def record_uncovered(
     given_text: str, every_clause: list[ParsedClause], steps: list[Step], records: dict[int, ClauseRecord]
 ) -> None:
-    """Records what of each clause its steps do not show: what parsing has found, then each word without a field."""
+    """Records what the steps do not show of each clause: the parser's findings, then each word without a field.
+
+    Args:
+        given_text: The original sentence.
+        every_clause: All parsed clauses.
+        steps: Final steps.
+        records: Record of each clause by its number, modified in place.
+    """
     parts = [part for step in steps for part in step.each]
     lost = [(parsed.number, how) for parsed in every_clause for how in parsed.lost]
     approximated = {parsed.number for parsed in every_clause if parsed.approximations}
@@ -173,10 +187,19 @@ def record_uncovered(
 def explain_clauses(
     given_text: str, steps: Sequence[Step], records: dict[int, ClauseRecord], *, roughly: bool
 ) -> tuple[list[Step], list[ClauseRecord], list[str]]:
-    """Steps and records with the clauses as they were given, in the sentence's order, and a note for each not done so.
+    """Restates steps and records in the original clauses, in the sentence's order.
 
-    A record says all that its clause is shown as, unless the words say just that; notes are of clauses that are not
-    done. A clause that patterns have added counts with the one before.
+    A record states all that its clause is shown as, unless the words state exactly that. A clause added by patterns
+    counts with the previous one.
+
+    Args:
+        given_text: The original sentence.
+        steps: Final steps.
+        records: Record of each clause by its number.
+        roughly: Whether the sentence was parsed roughly.
+
+    Returns:
+        Steps, records, and a note for each clause that is not done as stated.
     """
     own_words = given_words(given_text, records)
     given = [number for number in sorted(records) if own_words[number]] or [min(records)]
@@ -201,7 +224,13 @@ def _quote_clauses(step: Step, index: dict[int, int], clauses: Sequence[ClauseRe
 
 
 def quote_given_words(message: str, given_text: str, clauses: dict[int, str]) -> str:
-    """A message that quotes clauses as they were taken, with the sentence's own words instead."""
+    """Replaces quoted clauses of a message by the original words.
+
+    Args:
+        message: Message that quotes clauses after rewriting.
+        given_text: The original sentence.
+        clauses: Words of each clause after rewriting, by number.
+    """
     if not clauses:
         return message
     own_words = given_words(given_text, {number: ClauseRecord(text) for number, text in clauses.items()})

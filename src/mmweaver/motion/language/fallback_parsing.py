@@ -1,4 +1,4 @@
-"""Clauses that are not understood as they are: with phrases left out, missed, or read roughly, which is reported."""
+"""Fallbacks for clauses that are not understood: dropped phrases, skipped clauses, rough parsing; all are reported."""
 
 import re
 from collections.abc import Iterator
@@ -28,9 +28,9 @@ from mmweaver.motion.language.places import MARK as PLACE
 from mmweaver.motion.language.plan import Hand, Step
 from mmweaver.motion.language.words import Word
 
-# How much of a sentence may be left: nothing, phrases that only say how, clauses, and what only a rough reading keeps.
+# What may be dropped: nothing, phrases of manner, whole clauses, and all but a rough reading.
 EXACT, LEAVING_OUT, MISSING, ROUGH = range(4)
-# Words that begin a phrase which says how.
+# Words that begin a phrase of manner.
 _OPENING = words_in(
     """
     like as with without using over through across along on onto against in into by of from at for during under
@@ -39,7 +39,7 @@ _OPENING = words_in(
 )
 _TO_THE_END = words_in("like as without using while having showing being holding looking due")
 _DIRECTIONS = words_in("left right forwards backwards forward backward in_circle towards away sideways")
-# Movements of the whole body that no other may stand for.
+# Whole-body movements, which no other may replace.
 _WHOLE_BODY = MANY | NOT_HUMAN | WHOLE_BODY
 _HOW = words_in("with without using by because since that which where like as if for in showing supported")
 _BEFORE_HOW = words_in("and then thereby always a bit little maybe perhaps possibly quite almost kind of")
@@ -48,9 +48,14 @@ _MAX_CUTS = 2
 
 
 def parse_with_less(clause: Clause, *, is_first: bool) -> ParsedClause:
-    """As `parse_clause`, but what only says how is left out where it is not known, which the clause's record says.
+    """As `parse_clause`, but drops unknown phrases of manner, which the clause's record reports.
 
-    Raises InputError if no movement would remain; `is_first`: no clause before has one.
+    Args:
+        clause: The clause.
+        is_first: Whether no previous clause has a movement.
+
+    Raises:
+        InputError: If no movement would remain.
     """
     words = list(clause.words)  # parse_clause takes places and tokens away
     try:
@@ -77,15 +82,23 @@ def parse_with_less(clause: Clause, *, is_first: bool) -> ParsedClause:
 
 
 def may_be_missed(clause: Clause) -> bool:
-    """Whether a clause that is not understood may be recorded as not done, where the others are understood.
+    """Whether a clause that is not understood may be recorded as not done, if the others are understood.
 
-    Not where it is about several people or animals, says what is not done, or names a movement of the whole body.
+    Not if it concerns several people or animals, negates, or names a movement of the whole body.
+
+    Args:
+        clause: The clause.
     """
     return not {word.text for word in clause.words} & (_WHOLE_BODY | NEGATIONS)
 
 
 def says_more_of(missed: Clause, clause: Clause) -> bool:
-    """Whether it only goes on with one that is not understood: 'the arm comes over, then goes back', 'and back'."""
+    """Whether a clause only continues one that is not understood: 'the arm comes over, then goes back', 'and back'.
+
+    Args:
+        missed: The clause that is not understood.
+        clause: The next clause.
+    """
     verb = next((word for word in clause.words if word.is_activity or word.is_going), None)
     if verb is None:
         return True
@@ -97,7 +110,7 @@ def says_more_of(missed: Clause, clause: Clause) -> bool:
 
 
 def _only_says_how(clause: Clause) -> bool:
-    """Whether a clause without a known movement is about how the one before is done."""
+    """Whether a clause without a known movement describes the manner of the previous one."""
     first = next((word for word in clause.words if word.text not in _BEFORE_HOW), None)
     if first is None or {word.text for word in clause.words} & _WHOLE_BODY:
         return False
@@ -106,18 +119,18 @@ def _only_says_how(clause: Clause) -> bool:
 
 
 def shown(words: list[Word]) -> str:
-    """Words as a message names them, without tokens of their own."""
+    """Words as quoted in messages, without internal tokens."""
     texts = [re.sub(r"^(?:arc|deg)(\d+)$", r"\1 degrees", word.text) for word in words]
     return " ".join(text for text in texts if not text.startswith((MARK, PLACE))).replace("_", " ")
 
 
 def is_odd(word: Word) -> bool:
-    """Whether a word is not known, or may mean another movement."""
+    """Whether a word is unknown, or may name another movement."""
     return word.text in OTHER_MOVEMENT or word.text in NEGATIONS or (not is_known(word) and word.text[:1].isalpha())
 
 
 def _cuts(words: list[Word]) -> Iterator[tuple[list[Word], list[list[Word]]]]:
-    """(words kept, phrases cut) with one phrase cut, then two; each phrase has a word that is not known."""
+    """Pairs (words kept, phrases cut) with one phrase cut, then two; each phrase has an unknown word."""
     verb = next((i for i, word in enumerate(words) if word.is_activity or word.is_going), None)
     if verb is None:
         return
@@ -134,7 +147,7 @@ def _cuts(words: list[Word]) -> Iterator[tuple[list[Word], list[list[Word]]]]:
 
 
 def _may_go(words: list[Word]) -> bool:
-    """Whether a phrase has a word that is not known, and no direction, movement or furniture."""
+    """Whether a phrase has an unknown word, and no direction, movement or furniture."""
     directed = any(
         word.text in _DIRECTIONS and not ARMS & {w.text for w in words[i + 1 : i + 3]} for i, word in enumerate(words)
     )
@@ -144,7 +157,7 @@ def _may_go(words: list[Word]) -> bool:
 
 
 def _phrases(words: list[Word], verb: int) -> list[tuple[int, int]]:
-    """(start, end) of what each opening word after the verb begins: up to the clause's end, and up to the next one."""
+    """Pairs (start, end) of the phrases after the verb: up to the clause's end, and up to the next opening word."""
     starts = [i for i in range(verb + 1, len(words)) if words[i].text in _OPENING]
     near = [(i, j) for i, j in pairwise([*starts, len(words)]) if words[i].text not in _TO_THE_END]
     return list(dict.fromkeys([*((start, len(words)) for start in reversed(starts)), *reversed(near)]))
@@ -169,7 +182,14 @@ _HANDLES = re.compile(
 
 
 def read_roughly(clause: Clause) -> ParsedClause | None:
-    """What a clause is shown as that is not understood; None where it names no known movement and no limb."""
+    """Approximates a clause that is not understood by its known words or its limbs.
+
+    Args:
+        clause: The clause.
+
+    Returns:
+        The approximation, with its report; None if the clause names no known movement and no limb.
+    """
     unclear = [word for word in clause.words if word.lemma in _RAISING and word.form == "past"]  # "with one raised"
     dropped = [word for word in clause.words if is_odd(word) or word in unclear]
     known = [word for word in clause.words if word not in dropped]
@@ -194,7 +214,7 @@ def read_roughly(clause: Clause) -> ParsedClause | None:
 
 
 def _limb_step(clause: Clause) -> tuple[Step | None, str]:
-    """The step that stands for what arms, legs or hands do in a clause, and how that is said."""
+    """Step that stands for the action of arms, legs or hands in a clause, and its report."""
     texts, side = {word.text for word in clause.words}, _side_of(clause.words)
     raises = any(word.lemma in _RAISING for word in clause.words)
     hand: Hand = side or ("both" if texts & _TWO else "")

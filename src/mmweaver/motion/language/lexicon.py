@@ -1,4 +1,4 @@
-"""The lexicon: words that a sentence may contain, by their function, as `lexicon.toml` lists them."""
+"""The lexicon: words that a sentence may contain, by their function, from `lexicon.toml`."""
 
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ _WORDS = {name: words_in(words) for name, words in _TABLE.items() if isinstance(
 
 
 def _inverse(name: str) -> dict[str, str]:
-    """{word: what it stands for} of a table that lists the words for each meaning."""
+    """Maps each word to its meaning, from a table of words by meaning."""
     return {word: meaning for meaning, words in _TABLE[name].items() for word in words.split()}
 
 

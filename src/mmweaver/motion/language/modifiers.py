@@ -20,7 +20,13 @@ _TOKENS = ("onback", "onbelly", "lookdown", "highkick", "frontlunge")
 
 
 def modifiers(words: list[Word], clause_text: str, notes: list[str]) -> Step:
-    """The modifiers of a clause as a Step without a verb; assumptions are appended to `notes`."""
+    """The modifiers of a clause as a Step without a verb.
+
+    Args:
+        words: Words of the clause.
+        clause_text: Its text.
+        notes: Assumptions are appended to it.
+    """
     about = Step(clause=clause_text)
     texts = {word.text for word in words}
     for i, word in enumerate(words):
@@ -46,7 +52,7 @@ def modifiers(words: list[Word], clause_text: str, notes: list[str]) -> Step:
 
 
 def _left_or_right(about: Step, words: list[Word], i: int, notes: list[str]) -> Step:
-    """Before an arm it names the arm; else it is a direction, the viewer's unless "his left" makes it the person's."""
+    """Names the arm that follows; otherwise it is a direction, the viewer's unless "his left" makes it the person's."""
     text, before, after = words[i].text, words[i - 1].text if i else "", words[i + 1].text if i + 1 < len(words) else ""
     if after in ARMS or after.removesuffix("s") in ("punch", "jab", "hook") or _arm_soon(words, i):
         return replace(about, hand="both" if about.hand and about.hand != text else text)
@@ -96,7 +102,7 @@ def _direction(about: Step, text: str, words: list[Word], i: int) -> Step:
 
 
 def _is_no_direction(text: str, words: list[Word], i: int, following: set[str]) -> bool:
-    """Whether a word for a direction aims at what is not known (`accounts` says so), or belongs to a limb."""
+    """Whether a direction refers to something unknown (reported by `token_coverage`), or belongs to a limb."""
     if text in ("towards", "toward", "away") and following & {"left", "right"}:
         return True
     if text in ("towards", "toward") and following and not following & (RADAR | TARGETS.keys() | _WHOM):
@@ -131,7 +137,7 @@ def _number(about: Step, text: str, words: list[Word], i: int) -> Step:
 
 
 def _token(about: Step, text: str, texts: set[str]) -> Step:
-    """Tokens of phrases.ACTIVITY_PHRASES: angles, legs, the side a push comes from, back or belly."""
+    """Tokens of phrases: angles, legs, the side of a push, back or belly."""
     if text in ("left_leg", "right_leg"):
         return replace(about, foot=text.removesuffix("_leg"))
     if text.startswith("arc") and text[3:].isdigit():

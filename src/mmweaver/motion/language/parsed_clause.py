@@ -1,4 +1,4 @@
-"""A clause with its steps, and what a clause without an activity adds to the steps of the one before."""
+"""A clause with its steps, and the effect of a clause without an activity on the previous steps."""
 
 from dataclasses import dataclass, field, replace
 
@@ -12,21 +12,37 @@ from mmweaver.motion.language.words import Word
 
 @dataclass
 class ParsedClause:
-    """Steps and modifiers of one clause."""
+    """Steps and modifiers of one clause.
+
+    Attributes:
+        link: Relation to the previous clause, see `Clause`.
+        text: Words of the clause.
+        steps: Steps of its verbs.
+        form: Form of the first verb: ing, s, ...
+        forms: Form of each step's verb.
+        about: Direction, hand, speed, ... of a clause without a verb.
+        notes: Assumptions.
+        approximations: Deviations from the sentence.
+        unknown: Unknown words.
+        number: Position of the clause in the sentence.
+        words: Words of the clause.
+        lost: As `approximations`, found after all clauses are parsed.
+        in_turn: Whether its report states that movements are shown one after the other.
+    """
 
     link: str
     text: str
     steps: list[Step] = field(default_factory=list)
-    form: str = ""  # of the first verb: ing, s, ...
-    forms: list[str] = field(default_factory=list)  # of each step's verb
-    about: Step = field(default_factory=Step)  # direction, hand, speed, ... of a clause without a verb
-    notes: list[str] = field(default_factory=list)  # what was assumed
-    approximations: list[str] = field(default_factory=list)  # what is not shown as it was said
+    form: str = ""
+    forms: list[str] = field(default_factory=list)
+    about: Step = field(default_factory=Step)
+    notes: list[str] = field(default_factory=list)
+    approximations: list[str] = field(default_factory=list)
     unknown: list[str] = field(default_factory=list)
-    number: int = 0  # of the clause in the sentence
+    number: int = 0
     words: list[Word] = field(default_factory=list)
-    lost: list[str] = field(default_factory=list)  # as `approximations`, found once all clauses are parsed
-    in_turn: bool = False  # what is said of it has that movements are shown one after the other
+    lost: list[str] = field(default_factory=list)
+    in_turn: bool = False
 
     @property
     def adds_nothing(self) -> bool:
@@ -35,7 +51,7 @@ class ParsedClause:
 
     @property
     def says_times(self) -> bool:
-        """Whether it says how often: 'twice', 'multiple times'."""
+        """Whether it states a number of repetitions: 'twice', 'multiple times'."""
         return any(word.text in TIMES or word.text == "times" for word in self.words)
 
     @property
@@ -44,17 +60,24 @@ class ParsedClause:
 
     @property
     def speed_of_both(self) -> int:
-        """Speed that it says of the movement before, too: "forwards and backwards slowly"; 0 for none."""
+        """Speed that also applies to the previous movement: "forwards and backwards slowly"; 0 for none."""
         ends_with_it = bool(self.words) and self.words[-1].text in SPEEDS
         return self.about.speed if ends_with_it and self.link in ("and", "comma") else 0
 
     def say_in_turn(self, one: Step, other: Step) -> None:
-        """Says that two movements are shown one after the other."""
+        """Reports that two movements are shown one after the other."""
         self.lost.append(f"{one.name} and {other.name} are shown one after the other")
         self.in_turn = True
 
     def absorb(self, more: "ParsedClause") -> None:
-        """Applies the modifiers of a clause without an activity to the last step."""
+        """Applies the modifiers of a clause without an activity to the last step.
+
+        Args:
+            more: The clause that follows.
+
+        Raises:
+            InputError: If the two name contradictory directions.
+        """
         about = more.about
         self.take_its_speed(more)
         last = self.steps[-1]
@@ -89,7 +112,11 @@ class ParsedClause:
         )
 
     def go_on(self, more: "ParsedClause") -> None:
-        """Adds a step like the last one in another direction."""
+        """Adds a step like the last one in another direction.
+
+        Args:
+            more: The clause that follows, without an activity.
+        """
         about = more.about
         self.take_its_speed(more)
         last = self.steps[-1]
@@ -111,7 +138,7 @@ class ParsedClause:
         self.forms.append("s")
 
     def take_its_speed(self, more: "ParsedClause") -> None:
-        """The speed that the clause after it says of both."""
+        """Applies the speed that the following clause states for both."""
         self.steps[-1] = replace(self.steps[-1], speed=self.steps[-1].speed or more.speed_of_both)
 
     def _leads_back(self, last: Step, more: "ParsedClause") -> bool:
@@ -136,14 +163,14 @@ class ParsedClause:
 
 
 def _count_of(last: Step, more: ParsedClause) -> int:
-    """How often the last step is done: 'does a kick, three times' is three, 'walks, three times' no number of paces."""
+    """Repetitions of the last step: 'does a kick, three times' is three, 'walks, three times' no number of paces."""
     if more.says_times:
         return last.count if last.lower in GAITS else max(more.about.count, last.count)
     return last.count or more.about.count
 
 
 def _same_length(about: Step, walk: Step) -> Step:
-    """A walk with the speed and the length of a clause that says more of it; as long as before where it says none."""
+    """A walk with speed and length of the clause that continues it; the previous length if it states none."""
     says_how_far = bool(about.count or about.seconds or about.distance_m)
     own = about if says_how_far else walk
     return replace(

@@ -1,4 +1,4 @@
-"""Where something is done: 'near the window', 'behind the sofa', 'in the corner', 'two metres away', 'on the left'."""
+"""Places of activities: 'near the window', 'behind the sofa', 'in the corner', 'two metres away', 'on the left'."""
 
 import re
 from dataclasses import dataclass, replace
@@ -25,35 +25,35 @@ _THERE, _AWAY_FROM_IT, _PATTERNS = (
     [(re.compile(expand_parts(pattern, _PARTS)), relation) for pattern, relation in _TABLE["patterns"][group]]
     for group in ("there", "away", "at")
 )
-AIM = "aim_"  # the token for what somebody faces: a Landmark.kind follows
+AIM = "aim_"  # token of a faced object: a Landmark.kind follows
 
 
 @dataclass(frozen=True)
 class Place:
-    """A place of a sentence, for the planner to find in the room."""
+    """A place in a sentence, for the planner to find in the room."""
 
     # near | behind | front | leftof | rightof | in | against | between | under | outside | range | left | right
     # | middle | far | close
     relation: str
-    landmark: str = ""  # the Landmark.kind that it is relative to; wall, corner: of the room
-    other: str = ""  # of "between", the other one
-    is_end: bool = False  # of "middle": the walk goes there
+    landmark: str = ""  # Landmark.kind that it is relative to; wall, corner: of the room
+    other: str = ""  # second object of "between"
+    is_end: bool = False  # "middle" is the destination of a walk
     distance_m: float = 0.0  # of "range"
-    also: "Place | None" = None  # where it is at the same time: 'two metres away on the left'
+    also: "Place | None" = None  # additional constraint: 'two metres away on the left'
 
     def together_with(self, other: "Place") -> "Place":
-        """Both places at once, the one at a landmark first."""
+        """The intersection of two places, the one at a landmark first."""
         one, more = (other, self) if other.landmark and not self.landmark else (self, other)
         return replace(one, also=more if one.also is None else one.also.together_with(more))
 
     @property
     def is_goal(self) -> bool:
-        """Whether a walk to it goes there, instead of beginning there."""
+        """Whether a walk goes to this place instead of beginning there."""
         return bool(self.landmark) or self.is_end or self.relation == "outside"
 
     @property
     def words(self) -> str:
-        """As it is shown in messages."""
+        """The place as worded in messages."""
         if self.also is not None:
             return f"{replace(self, also=None).words}, {self.also.words}"
         if self.relation == "range":
@@ -77,7 +77,11 @@ class Place:
 
 
 def mark_places(text: str) -> str:
-    """The sentence, in lower case, with a token for each place, and for what is faced or pointed at."""
+    """Replaces each place, and each object faced or pointed at, by a token.
+
+    Args:
+        text: The sentence in lower case.
+    """
     text = _WHOM.sub(lambda found: f"{found[1]} {AIM}{found[2]} ", text)
     text = _WHOSE.sub(lambda found: f"{found[1]} {MARK}{found['side'] or found.lastgroup} ", text)
     for pattern in (_AIMED, _FACED):
@@ -97,7 +101,7 @@ def _side_tokens(found: re.Match[str], token: str) -> str:
 
 
 def _unless_acted_there(found: re.Match[str], relation: str) -> str:
-    """The token of a place where nobody can be shown; the words where only something is done there."""
+    """Token of a place outside the room; the words unchanged if something is only directed there."""
     if _ACTS_THERE.search(found.string[: found.start()]):
         return found[0]
     kind = TARGETS.get(found["object"], "")
@@ -121,6 +125,9 @@ def _token(found: re.Match[str], relation: str) -> str:
 def place_of(token: str) -> Place:
     """The place that a token of `mark_places` stands for.
 
+    Args:
+        token: The token.
+
     >>> place_of("place_behind_couch").words, place_of("place_range_250").distance_m
     ('behind the couch', 2.5)
     """
@@ -134,6 +141,6 @@ def place_of(token: str) -> Place:
 
 
 def room_of(text: str) -> str:
-    """The kind of room that a sentence names, or ""."""
+    """The kind of room named in a sentence, or ""."""
     found = _ROOM.search(text.lower())
     return found[1] if found else ""

@@ -1,4 +1,4 @@
-"""What lasts: arms stay where they were put, and who stays down does so, until a clause says otherwise."""
+"""Persistence of postures: arms stay in place, and a lowered body stays down, until a clause ends it."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
@@ -9,10 +9,10 @@ from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.plan import Step, Way
 from mmweaver.motion.language.simultaneous import ARMS_TAKEN, ONE_ARMED
 
-# Postures of the arms, which last, and movements of the head alone, for which they come down.
+# Persistent postures of the arms, and movements of the head alone, for which they come down.
 ARM_POSTURES = words_in("cross_arms hips arms_out raise_hold hands_up")
 _OF_THE_HEAD = words_in("look_around nod shake_head")
-# Postures that the legs or the trunk are held in -> the step that holds them.
+# Postures of legs or trunk -> the step that holds them.
 _HELD_LOW = {"squat": "crouch", "crouch": "crouch", "raise_leg": "one_leg", "one_leg": "one_leg"}
 _HELD_BENT = ("bend", "lean")
 STAYING = words_in(
@@ -32,7 +32,7 @@ LOWERED = words_in("lower lowers lowering lowered drop drops dropping down relea
 _PUTTING = words_in("put puts putting bring brings bringing take takes taking let lets")
 _WITH_A_RAISED_HAND, _WITH_WHAT_IS_TAKEN = words_in("throw punch"), words_in("throw drink eat pull")
 _AS_HANGING = "arms that go down are shown as hanging"
-_SETTLING_S = 1.2  # into a posture that is held for a given time
+_SETTLING_S = 1.2  # time to enter a posture that is held for a given time
 
 Lost = list[tuple[int, str]]
 
@@ -40,10 +40,15 @@ Lost = list[tuple[int, str]]
 def persist_postures(
     steps: Sequence[Step], clauses: Mapping[int, str], afterwards: Collection[int] = ()
 ) -> tuple[list[Step], Lost]:
-    """The steps with postures that last, and (number of the clause, what is not shown) where they cannot.
+    """Applies persistent postures to the steps.
 
-    `clauses`: the words of each clause by its number, and what is said of it; `afterwards`: those of the clauses that
-    begin with "then", before which an arm that was raised comes down.
+    Args:
+        steps: Steps of the plan.
+        clauses: Words of each clause by its number, with its report.
+        afterwards: Clauses that begin with "then", before which a raised arm comes down.
+
+    Returns:
+        The steps, and (number of the clause, what is not shown) for postures that cannot persist.
     """
     result: list[Step] = []
     lost: Lost = []
@@ -81,13 +86,13 @@ def persist_postures(
 
 
 def _comes_up_last(last: Step, clauses: Mapping[int, str]) -> int | None:
-    """The clause after the last step, without a step of its own, that ends a posture that is held."""
+    """The clause after the last step, without a step of its own, that ends a held posture."""
     after = {number: words_in(words) for number, words in clauses.items() if number > max(last.clauses, default=-1)}
     return next((number for number, own in after.items() if own & _RISING and not own & STAYING), None)
 
 
 def _lowered_from_there(result: list[Step], step: Step, lost: Lost) -> Step:
-    """A step that lowers arms, which stay up in the step before it; one that stands where they have not been up."""
+    """A step that lowers arms, which stay up in the previous step; standing if they have not been up."""
     if not result or step.upper != "lower_arm" or step.lower != "stand" or step.other_hand is not None:
         return step
     before = result[-1]
@@ -100,7 +105,7 @@ def _lowered_from_there(result: list[Step], step: Step, lost: Lost) -> Step:
 
 
 def _brought_back_by(last: Step, clauses: Mapping[int, str]) -> int | None:
-    """The last clause, if it brings down arms that would else stay up: 'folds the arms and lowers them'."""
+    """The last clause, if it lowers arms that would otherwise stay up: 'folds the arms and lowers them'."""
     still = (
         last.lower in ("stand", "sit", "kneel", "walk", "jog")
         and last.upper in ARM_POSTURES
@@ -122,19 +127,19 @@ def _brings_down(words: Collection[str]) -> bool:
 
 
 def _follows(step: Step, afterwards: Collection[int]) -> bool:
-    """Whether a step begins a clause that follows with "then", or one that no clause names."""
+    """Whether a step begins a clause that follows with "then", or belongs to no clause."""
     return not step.clauses or min(step.clauses) in afterwards
 
 
 def _stays_raised(before: Step, step: Step) -> bool:
-    """Whether an arm that was raised is still up: the next movement leaves the arms alone."""
+    """Whether a raised arm is still up: the next movement leaves the arms alone."""
     lifted = before.upper == "raise" and before.lower == "stand" and not (before.count or before.other_hand)
     free = step.lower not in _NO_ARMS_FREE and step.lower != "stand" and BY_KEY[step.lower].posture == "feet"
     return lifted and free and not step.upper
 
 
 def _inherited_hand(before: Step | None, step: Step) -> Step:
-    """The hand that was raised, held out or took something is the one that does what comes next."""
+    """The hand that was raised, held out or took something also performs the next activity."""
     if before is None or before.hand not in OPPOSITE or step.hand or step.other_hand:
         return step
     lifted = before.upper in ("raise", "raise_hold", "arms_out") and step.upper in ONE_ARMED | _WITH_A_RAISED_HAND
@@ -143,7 +148,7 @@ def _inherited_hand(before: Step | None, step: Step) -> Step:
 
 
 def _kept_up(step: Step, clauses: Mapping[int, str]) -> Step:
-    """A raised arm or leg that a clause without a step of its own keeps up: 'raises an arm, keeps it up and walks'."""
+    """A raised arm or leg kept up by a clause without a step of its own: 'raises an arm, keeps it up and walks'."""
     more = [words_in(clauses.get(number, "")) for number in step.clauses[1:]]
     if len(more) > 1 and _brings_down(more[-1]):  # "holds it, puts it down"
         del more[-1]
@@ -158,7 +163,7 @@ def _kept_up(step: Step, clauses: Mapping[int, str]) -> Step:
 
 
 def _comes_back(before: Step, step: Step, clauses: Mapping[int, str]) -> bool:
-    """Whether a clause that needs no step has brought arms, legs or trunk back: 'lowers them', 'straightens up'."""
+    """Whether a clause without a step has brought arms, legs or trunk back: 'lowers them', 'straightens up'."""
     first, last = max(before.clauses, default=-1), min(step.clauses, default=-1)
     between = [*before.clauses[1:], *range(first + 1, last)]
     said = [clauses.get(number, "") for number in between]
@@ -168,7 +173,7 @@ def _comes_back(before: Step, step: Step, clauses: Mapping[int, str]) -> bool:
 
 
 def _held_pose(before: Step, step: Step) -> Step | None:
-    """One step that goes into the posture of the step before and stays in it; None where it has none that is held."""
+    """One step that enters the previous step's posture and stays in it; None if it has none that is held."""
     seconds = step.seconds + _SETTLING_S if step.seconds else before.seconds
     kept = replace(before, seconds=seconds, clauses=_together(before, step), clause=f"{before.clause}, {step.clause}")
     if before.count > 1:
@@ -184,7 +189,7 @@ def _held_pose(before: Step, step: Step) -> Step | None:
 
 
 def _kept_arms(before: Step, step: Step, *, moves_arms: bool) -> list[Step]:
-    """The two steps, the arms staying as they are in the second one; one step where nothing else happens."""
+    """The two steps with the arms unchanged in the second one; one step if nothing else happens."""
     if moves_arms or step.lower in _NO_ARMS_FREE or BY_KEY[step.lower].posture == "floor":
         return [before, step]
     arms = {"upper": before.upper, "hand": before.hand}

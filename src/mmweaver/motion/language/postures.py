@@ -1,4 +1,4 @@
-"""Keeps postures: sitting, kneeling and lying last until the person gets up; missing transitions are inserted."""
+"""Postures: sitting, kneeling and lying last until the person gets up; missing transitions are inserted."""
 
 import re
 from dataclasses import replace
@@ -11,16 +11,23 @@ from mmweaver.motion.language.posture_persistence import STAYING
 RISING = {"seat": ("stand_up",), "knees": ("kneel_up",), "floor": ("get_up",), "couch": ("sit_up", "stand_up")}
 STILL = {"seat": "sit", "knees": "kneel", "floor": "lie", "couch": "lie_on_seat"}
 _WITH_FREE_HANDS = ("sit_down", "kneel_down")
-# What is done lying, and on which side; "": on either.
+# Activities done lying, and on which side; "": on either.
 LYING = {"push_ups": "front", "plank": "front", "sit_ups": "back", "roll_over": ""}
 _ITS_PLACE = re.compile(r"back[_ ]to[_ ]start|\b(?:position|place|spot|pose|posture|stance)\b")
-_FALLS_ON = {Way.FORWARDS: "front", Way.BACKWARDS: "back"}  # the way of a stumble -> style of the fall
+_FALLS_ON = {Way.FORWARDS: "front", Way.BACKWARDS: "back"}  # direction of a stumble -> style of the fall
 _WAYS_OF_FALLING = words_in("back backwards backward onback onbelly forward forwards front ahead")
 ENTERING = {"sit": "sit_down", "kneel": "kneel_down", "lie": "lie_down", "lie_on_seat": "recline"}
 
 
 def insert_transitions(steps: list[Step]) -> list[Step]:
-    """The steps with transitions (sitting down, kneeling, lying down, getting up) inserted where they are needed."""
+    """Inserts the missing transitions: sitting down, kneeling, lying down, getting up.
+
+    Args:
+        steps: Steps of the plan.
+
+    Returns:
+        All steps, repeated static postures merged.
+    """
     result: list[Step] = []
     posture = ""  # not known yet
     for step in steps:
@@ -31,7 +38,7 @@ def insert_transitions(steps: list[Step]) -> list[Step]:
 
 
 def _transitions_to(step: Step, posture: str, before: list[Step]) -> list[Step]:
-    """The step as it is carried out from this posture, after the transitions that it needs."""
+    """The step as performed from a posture, after the transitions that it needs."""
     if step.lower in ("stand_up", "kneel_up", "get_up"):
         return _rising(step, posture, before)
     if posture in STILL and step.lower == "stand" and not step.on_feet:  # "sits down, stays for two seconds"
@@ -52,7 +59,7 @@ def _rising(step: Step, posture: str, before: list[Step]) -> list[Step]:
 
 
 def _going_down(step: Step, posture: str, before: list[Step]) -> list[Step]:
-    """Sitting, kneeling, lying: stays so, or goes down first."""
+    """Sitting, kneeling, lying: stays in the posture, or goes down first."""
     anything_before = bool(before)
     if step.lower == "roll_over" and posture == "couch":
         step = replace(step, lower="roll_in_bed")
@@ -88,7 +95,7 @@ def _going_down(step: Step, posture: str, before: list[Step]) -> list[Step]:
 
 
 def _lies_on(before: list[Step]) -> str:
-    """front | back | left | right: how somebody who is on the floor lies there."""
+    """Side on which a body on the floor lies: front | back | left | right."""
     for step in reversed(before):
         if LYING.get(step.lower):
             return LYING[step.lower]
@@ -98,13 +105,13 @@ def _lies_on(before: list[Step]) -> str:
 
 
 def _is_done_once(step: Step) -> bool:
-    """Whether the hands' movement has a beginning and an end, so that it is not begun while going down."""
+    """Whether the hands' movement has a beginning and an end, so that it does not start while going down."""
     activity = BY_KEY[step.upper] if step.upper else None
     return activity is not None and (activity.once or activity.counted_s is not None)
 
 
 def _seat_transitions(step: Step, posture: str, anything_before: bool) -> list[Step]:
-    """Lying on furniture and falling off it, both from sitting there; sitting up from lying."""
+    """Lying on furniture and falling off it, both from sitting; sitting up from lying."""
     if posture == "couch" and step.lower in ("recline", "lie_on_seat"):
         return [replace(step, lower="lie_on_seat")]
     if step.lower == "roll_in_bed" and posture == "couch":
@@ -135,7 +142,7 @@ def _rising_steps(posture: str, step: Step) -> list[Step]:
 
 
 def _falling_on(steps: list[Step]) -> list[Step]:
-    """Who stumbles and falls goes down the way of the stumble, without coming upright first: `FALLING_ON`."""
+    """A stumble with a fall continues in its direction, without coming upright first: `FALLING_ON`."""
     for k, (before, step) in enumerate(pairwise(steps)):
         if before.lower != "stumble" or step.lower != "fall" or before.style:
             continue
@@ -150,7 +157,7 @@ def _falling_on(steps: list[Step]) -> list[Step]:
 
 
 def _styled(steps: list[Step]) -> list[Step]:
-    """Lying on back or belly as the person went down; kneeling on the knee that was named."""
+    """Lying on back or belly as the person went down; kneeling on the named knee."""
     style, foot, knee = "", "", ""
     for k, step in enumerate(steps):
         if step.lower in LYING:
@@ -169,15 +176,19 @@ def _styled(steps: list[Step]) -> list[Step]:
 
 
 def inherit_state(steps: list[Step]) -> list[Step]:
-    """'Walks back' returns if the person has walked before, goes on after a turn, else backwards.
+    """Resolves what a step takes over from earlier ones.
 
-    A raised hand is the one to wave; what was picked up is put down with the same hands.
+    'Walks back' returns if the person has walked before, goes on after a turn, else goes backwards; objects that were
+    picked up are put down with the same hands.
+
+    Args:
+        steps: Steps of the plan, modified in place.
     """
     gone = False
     for k, step in enumerate(steps):
-        if step.direction == Way.BACK and not gone and k and _ITS_PLACE.search(step.clause):  # it has left no place
+        if step.direction == Way.BACK and not gone and k and _ITS_PLACE.search(step.clause):  # not moved away
             steps[k] = replace(step, lower="stand", direction=None)
-        elif step.direction == Way.BACK and not gone:  # "turns around and walks back" goes where the person faces then
+        elif step.direction == Way.BACK and not gone:  # "turns around and walks back" goes along the new heading
             turned = k > 0 and steps[k - 1].lower == "turn"
             steps[k] = replace(step, direction=Way.FORWARDS if turned else Way.BACKWARDS)
         gone = gone or step.moves
@@ -188,7 +199,11 @@ def inherit_state(steps: list[Step]) -> list[Step]:
 
 
 def merged(steps: list[Step]) -> list[Step]:
-    """Merges two equal static postures in a row, but no pause before the next movement."""
+    """Merges two equal static postures in a row, unless the second is a pause before the next movement.
+
+    Args:
+        steps: Steps in temporal order.
+    """
     result: list[Step] = []
     for number, step in enumerate(steps, start=1):
         plain = (
@@ -210,5 +225,5 @@ def merged(steps: list[Step]) -> list[Step]:
 
 
 def _is_a_pause(step: Step) -> bool:
-    """Whether a posture is one that somebody stays in: 'pauses', 'lies there for a bit'."""
+    """Whether a posture is a deliberate pause: 'pauses', 'lies there for a bit'."""
     return step.lower != "stand" and bool((STAYING | {"there"}) & {*step.clause.split()})

@@ -1,4 +1,4 @@
-"""A whole sentence done several times: 'repeats this twice', 'three times, a person ...'."""
+"""Repetition of a whole sentence: 'repeats this twice', 'three times, a person ...'."""
 
 import re
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ _SIT_TO_STAND = re.compile(
 
 @dataclass(frozen=True)
 class RepeatedSentence:
-    """What is done, how often in all, and the words that say so."""
+    """The sentence to repeat, the total number of times, and the words that state it."""
 
     text: str
     times: int = 1
@@ -36,7 +36,10 @@ class RepeatedSentence:
 
 
 def repetition_of(text: str) -> RepeatedSentence:
-    """The sentence without the words that repeat all of it.
+    """Splits off the words that repeat the whole sentence.
+
+    Args:
+        text: The sentence.
 
     >>> repetition_of("a person bows, then claps and repeats this twice")
     RepeatedSentence(text='a person bows, then claps', times=3, words='repeats this twice')

@@ -1,4 +1,4 @@
-"""Rewriting of sentences into words that the grammar knows; the rows are in `rewrite_rules.toml`."""
+"""Rewrites sentences into words that the grammar knows; the rows are in `rewrite_rules.toml`."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -32,7 +32,7 @@ _FEW = {"some": "3", "several": "3", "a few": "3"}
 
 @cache
 def _rules(stage: str) -> list[tuple[re.Pattern[str], Replacement]]:
-    """Compiled when first needed: most sentences never need the last stage."""
+    """Compiled on first use: most sentences never need the last stage."""
     rows = [(re.compile(expand_parts(pattern, _PARTS), re.IGNORECASE), to) for pattern, to in _TABLE["rules"][stage]]
     if stage != "phrases":
         return rows
@@ -40,17 +40,17 @@ def _rules(stage: str) -> list[tuple[re.Pattern[str], Replacement]]:
 
 
 def expand_parts(pattern: str, parts: Mapping[str, str]) -> str:
-    """A pattern with the parts that it names in angle brackets."""
+    """Expands the parts that a pattern names in angle brackets, recursively."""
     return re.sub(r"(?<!P)<([a-z_]+)>", lambda name: expand_parts(parts[name[1]], parts), pattern)
 
 
 def rewritten(text: str, stage: str) -> str:
-    """The sentence after the rules of a stage.
+    """Applies the rules of a stage to a sentence.
 
     Args:
-        text: a sentence; in lower case for "phrases".
-        stage: "first" (before anything else), "phrases" (each becomes one token) or "last" (where a sentence is not
-            understood as it is).
+        text: The sentence; in lower case for "phrases".
+        stage: "first" (before anything else), "phrases" (each becomes one token) or "last" (if a sentence is not
+            understood otherwise).
 
     >>> rewritten("a person walks forward with a limp on the right leg", "first")
     'a person limps forward with the right leg'
@@ -61,13 +61,13 @@ def rewritten(text: str, stage: str) -> str:
 
 
 def words_of_phrases() -> set[str]:
-    """The words, and stems of words, that the patterns of phrases are made of."""
+    """The words, and stems of words, in the patterns of phrases."""
     patterns = " ".join(expand_parts(pattern, _PARTS) for pattern, _ in _TABLE["rules"]["phrases"])
     return set(re.findall("[a-z]+", re.sub(r"\\[a-z]|\(\?[:=!<]*", " ", patterns)))
 
 
 def _participle_rule(replacement: str) -> Replacement | None:
-    """The token of a hand activity ends in "ing" where the first word did."""
+    """The token of a hand activity ends in "ing" if the first word did."""
     token = next(iter(replacement.split()), "")
     lower, upper = ACTIVITY_OF_LEMMA.get(token, ("", ""))
     if lower or not upper:
@@ -83,7 +83,7 @@ def _participle_rule(replacement: str) -> Replacement | None:
 def _punch_tokens(found: re.Match[str]) -> str:
     """One token for each punch of a list, with its hand and number: "a jab, a cross and a hook".
 
-    A cross or hook that nobody throws or does, and that has no jab or uppercut with it, is none.
+    A cross or hook without a verb of punching, and without a jab or uppercut, is not a punch.
     """
     punches = [punch.groups() for punch in re.finditer(_PUNCH, found["list"])]
     names = {name for _, _, name in punches}

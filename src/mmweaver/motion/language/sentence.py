@@ -1,4 +1,4 @@
-"""From a sentence to a MotionPlan: every clause becomes a step or an overlay, or an error names the clause."""
+"""Parses a sentence into a MotionPlan: every clause becomes a step or an overlay, or an error names the clause."""
 
 import re
 from copy import deepcopy
@@ -42,7 +42,7 @@ from mmweaver.motion.language.words import Word, words_of
 MAX_CHARACTERS = 1000
 MAX_STEPS = 24
 _LONG_NUMBER = re.compile(r"\d{10}")
-_YOUR = re.compile(r"\byour\b", re.IGNORECASE)  # "raise your hand", said to the person
+_YOUR = re.compile(r"\byour\b", re.IGNORECASE)  # "raise your hand", addressed to the person
 JUMPING = ("jump", "leap", "hop")
 BENT = ("bend", "bow", "squat", "crouch", "lunge")  # they end upright
 LOWERING = {"lower", "lowers", "lowering", "lowered", "drops", "drop", "down", "sink"}
@@ -51,14 +51,21 @@ LOWERING = {"lower", "lowers", "lowering", "lowered", "drops", "drop", "down", "
 def parse(text: str, *, in_part: bool = False) -> MotionPlan:
     """Parses what a person does into steps in temporal order, not scheduled yet.
 
-    What is not understood as it is, is tried in other words (`rewrite_rules`), then with similar movements instead of
-    unknown ones (`approximations`), which the clause's record says. `in_part`: last, clauses that are not understood
-    are recorded as not done, where at least as many are understood, or read roughly (`fallback_parsing`); labelled data
-    is parsed without.
+    A sentence that is not understood is tried in other words (`rewrite_rules`), then with similar movements instead of
+    unknown ones (`approximations`), which the clause's record reports. Left and right of a direction are the viewer's
+    (as in the photo), of a hand or a turn the person's own. See docs/decisions/reading-sentences.md.
 
-    Left and right of a direction are the viewer's (as in the photo), of a hand or a turn the person's own. Raises
-    InputError for an empty or overlong text, a negation, several people, or a clause that names no known activity:
-    nothing is left out silently. See docs/decisions/reading-sentences.md.
+    Args:
+        text: The sentence.
+        in_part: Whether, as a last resort, clauses that are not understood are recorded as not done, if at least as
+            many are understood, or parsed roughly (`fallback_parsing`). Labelled data is parsed without.
+
+    Returns:
+        The plan, with a record of every clause.
+
+    Raises:
+        InputError: If the text is empty or too long, a negation, about several people, or has a clause that names no
+            known activity: nothing is dropped silently.
     """
     given_text = text
     if not text.strip():
@@ -97,7 +104,7 @@ def parse(text: str, *, in_part: bool = False) -> MotionPlan:
 
 
 def _several_times(plan: MotionPlan, repeated: RepeatedSentence, given_text: str) -> MotionPlan:
-    """A plan done as often as the sentence says; raises InputError for too many steps."""
+    """Repeats a plan as often as stated; raises InputError for too many steps."""
     if len(plan.steps) * repeated.times > MAX_STEPS:
         raise InputError(
             f"{len(plan.steps)} movements {repeated.times} times are more than {MAX_STEPS}; say fewer, or none and ask"
@@ -120,9 +127,9 @@ def _several_times(plan: MotionPlan, repeated: RepeatedSentence, given_text: str
 
 
 def _parsed(text: str, given_text: str, leaving: int = EXACT) -> MotionPlan:
-    """The plan of one wording of a sentence; `leaving`: what of it may be left out or read roughly, which is said.
+    """The plan of one wording of a sentence; `leaving` is what may be dropped or parsed roughly, which is reported.
 
-    Raises InputError in the words of the sentence as it was given.
+    Raises InputError in the words of the original sentence.
     """
     text, notes = correct_spelling(text)
     words = words_of(text)
@@ -162,7 +169,7 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
 
 
 def _is_understood_alone(part: str) -> bool:
-    """Whether a part of a sentence is done as it is, so that nothing in it needs to be shown as something else."""
+    """Whether a part of a sentence is done as stated, so that nothing in it needs an approximation."""
     try:
         plan = _parsed(part, part) if part else None
     except InputError:
@@ -208,7 +215,7 @@ def _parsed_clauses(
 
 
 def _staying(parsed: ParsedClause) -> Step:
-    """The step of a clause whose verb moves nothing: 'meditates on the sofa for five seconds' sits there."""
+    """Step of a clause whose verb moves nothing: 'meditates on the sofa for five seconds' sits there."""
     about = parsed.about
     lower = "stand" if not about.seat else "lie_on_seat" if about.seat == "bed" else "sit"
     return Step(
@@ -223,7 +230,7 @@ def _staying(parsed: ParsedClause) -> Step:
 
 
 def _is_understood(clause: Clause, found: list[ParsedClause]) -> bool:
-    """Whether a clause gives a step or says more of one before; raises InputError for one that may not be missed."""
+    """Whether a clause gives a step or extends a previous one; raises InputError for one that may not be skipped."""
     try:
         _take(parse_with_less(deepcopy(clause), is_first=not found), deepcopy(found))
     except InputError:
@@ -234,7 +241,7 @@ def _is_understood(clause: Clause, found: list[ParsedClause]) -> bool:
 
 
 def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
-    """Adds a clause to those found, or what it says to the one before. Raises InputError for one that is not known."""
+    """Adds a clause to those found, or its modifiers to the previous one. Raises InputError if it is unknown."""
     if parsed.adds_nothing and found and parsed.link in ("and", "comma", "then", "while"):
         _fill_in(found[-1], parsed)
         last = found[-1].steps[-1]
@@ -257,7 +264,7 @@ def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
 
 
 def _fill_in(before: ParsedClause, parsed: ParsedClause) -> None:
-    """What a walk and the clause after it leave open: 'one step forward, two back', 'a step to the side and back'."""
+    """Fills in what a walk and the next clause leave open: 'one step forward, two back', 'a step aside and back'."""
     last = before.steps[-1]
     if last.count and last.lower in ("walk", "sidestep") and not parsed.about.count:
         number = next((NUMBERS[word.text] for word in parsed.words if word.text in NUMBERS), 0)
@@ -265,7 +272,7 @@ def _fill_in(before: ParsedClause, parsed: ParsedClause) -> None:
 
 
 def _another_step(last: Step, parsed: ParsedClause) -> Step | None:
-    """The next step that a clause without a verb asks for: the last one with the other hand, or to another side."""
+    """Next step of a clause without a verb: the last one with the other hand, or to another side."""
     other_side = _repeated_with_other_limb(last, parsed)
     if other_side is not None or _goes_elsewhere(last, parsed):
         return other_side
@@ -280,7 +287,7 @@ def _another_step(last: Step, parsed: ParsedClause) -> Step | None:
 
 
 def _once_more(last: Step, parsed: ParsedClause) -> bool:
-    """Whether a clause without a verb does the last movement again to a side: 'bows to the left, then to the right'."""
+    """Whether a clause without a verb repeats the last movement to a side: 'bows to the left, then to the right'."""
     on_the_spot = not last.moves and last.lower not in ("stand", "sit", "kneel", "lie") and not last.upper
     on_the_spot |= last.lower in ("leap", "crawl", "limp", "stagger")  # of the walks `_goes_elsewhere` says more
     on_the_spot |= last.upper in AIMED and last.facing == OPPOSITE.get(parsed.about.direction)
@@ -290,7 +297,7 @@ def _once_more(last: Step, parsed: ParsedClause) -> bool:
 
 
 def _repeated_with_other_limb(last: Step, parsed: ParsedClause) -> Step | None:
-    """The last movement again with the other hand or foot: 'punches with the left hand, then the right'."""
+    """Repeats the last movement with the other hand or foot: 'punches with the left hand, then the right'."""
     about = parsed.about
     aimed = parsed.link == "and" and not (about.hand or about.foot)  # "to the left and to the right"
     in_turn = parsed.link in ("then", "comma") or aimed or (parsed.link == "and" and about.count)

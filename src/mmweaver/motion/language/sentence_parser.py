@@ -1,4 +1,4 @@
-"""The front of every sentence: text in, MotionPlan out. The parser in use is chosen here and nowhere else."""
+"""Entry point of sentence parsing: text in, MotionPlan out. The parser in use is chosen here only."""
 
 from typing import Protocol
 
@@ -7,20 +7,20 @@ from mmweaver.motion.language.sentence import parse
 
 
 class SentenceParser(Protocol):
-    """Reads what a person does."""
+    """Interface of a parser of sentences."""
 
     def __call__(self, text: str, *, in_part: bool = False) -> MotionPlan:
         """The steps of a sentence in temporal order, not scheduled yet.
 
         Args:
-            text: the sentence.
-            in_part: whether clauses that are not understood are recorded as not done, where at least as many are.
+            text: The sentence.
+            in_part: Whether clauses that are not understood are recorded as not done, if at least as many are.
 
         Returns:
             The plan, with a record of every clause: done, approximated or not done.
 
         Raises:
-            InputError: where the sentence is not understood; one line says what of it, and what is known.
+            InputError: If the sentence is not understood; one line states the part, and what is known.
         """
 
 

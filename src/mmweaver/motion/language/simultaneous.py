@@ -1,5 +1,4 @@
-"""Which steps of a sentence happen at the same time, and how two become one: a walk of two descriptions, legs of one
-and arms of the other, an arm of each."""
+"""Simultaneous steps of a sentence, and how two become one: a walk of two descriptions, legs and arms, an arm each."""
 
 import re
 from dataclasses import replace
@@ -12,7 +11,7 @@ from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.plan import Shape, Side, Step, Way
 
-# Hand activities that leave the other arm free, and those of them that the head goes with.
+# Hand activities that leave the other arm free, and those of them that involve the head.
 ONE_ARMED = words_in(
     """
     wave raise arms_out drink eat phone brush_teeth comb wipe write stir knock point hips reach raise_hold lower_arm
@@ -22,23 +21,33 @@ ONE_ARMED = words_in(
 AT_THE_HEAD = words_in("drink eat phone brush_teeth comb yawn")
 ARMS_TAKEN = words_in("jumping_jacks pick_up put_down throw fall lie_down get_up stumble leap jump forward_roll")
 _IN_TURN = ({"walk", "turn"}, {"jog", "turn"})
-_REST_S = 0.5  # before a hand is raised to wave
+_REST_S = 0.5  # rest before a hand is raised to wave
 _WALKS_ON = re.compile(
     r"\b(?:walk|go|run|jog|mov)(?:s|es|e|ning|ging|ing)? (?:straight )?on$|\b(?:continu|carr(?:y|ies) on|resum|keep)"
 )
-_PAUSING = ("pause", "stop", "halt")  # not meanwhile: "pauses and waves"
+_PAUSING = ("pause", "stop", "halt")  # not simultaneous: "pauses and waves"
 _HELD = ("raise", "raise_hold", "hips", "arms_out", "phone")
-# What goes on for as long as there is time, so that what "and" adds happens meanwhile.
+# Open-ended activities, during which what "and" adds happens.
 _GOING_ON = {"dance", "march", "hop", "twist"}
 _PLAYED = {"guitar", "violin"}
-# The hands do what "and" adds before the body comes up.
+# Low postures, in which the hands do what "and" adds before the body comes up.
 _LOW = {"bend", "lean", "crouch", "squat", "one_leg", "raise_leg"}
 
 
 def sequence_steps(parsed_clauses: list[ParsedClause], leaving: int) -> list[Step]:
-    """Joins clauses that happen at the same time, and puts all others one after the other.
+    """Joins clauses that happen at the same time, and orders all others one after the other.
 
-    Where phrases may be left out, two movements that cannot be shown at once follow each other, which is said.
+    If phrases may be dropped, two movements that cannot be shown at once follow each other, which is reported.
+
+    Args:
+        parsed_clauses: Clauses with an activity in temporal order.
+        leaving: What may be dropped, see `fallback_parsing`.
+
+    Returns:
+        Steps in temporal order.
+
+    Raises:
+        InputError: If two movements cannot be shown at once.
     """
     steps: list[Step] = []
     for i, parsed in enumerate(parsed_clauses):
@@ -51,7 +60,7 @@ def sequence_steps(parsed_clauses: list[ParsedClause], leaving: int) -> list[Ste
                     parsed.say_in_turn(before, first)
             except InputError:
                 steps.append(before)
-                arms_alone = first.upper and first.lower == "stand"  # goes on in the posture of the step before
+                arms_alone = first.upper and first.lower == "stand"  # continues in the previous posture
                 if not leaving or (leaving < ROUGH and steps[-1].posture != first.posture and not arms_alone):
                     raise
                 steps.append(first)
@@ -76,14 +85,18 @@ def sequence_steps(parsed_clauses: list[ParsedClause], leaving: int) -> list[Ste
 
 
 def going_on(steps: list[Step]) -> list[Step]:
-    """Steps that go on from where the one before has left the body, which does not begin anew."""
+    """Merges steps that continue from the final pose of the previous one, which does not start anew.
+
+    Args:
+        steps: Steps in temporal order.
+    """
     result = steps[:1]
     for step in steps[1:]:
         before = result[-1]
         if _only_begins(before, step):
             hand = step.hand or before.hand
             clause, clauses = f"{before.clause}, {step.clause}", (*before.clauses, *step.clauses)
-            # a sequence that begins with a gesture begins in it: from rest, the hand is seen to be raised
+            # a sequence starts within its first gesture: a rest shows the raising of the hand
             at_rest = [replace(before, upper="", hand="", seconds=_REST_S)] if step.upper and len(result) == 1 else []
             result[-1:] = [*at_rest, replace(step, hand=hand, clause=clause, clauses=clauses)]
         else:
@@ -92,7 +105,7 @@ def going_on(steps: list[Step]) -> list[Step]:
 
 
 def _only_begins(before: Step, step: Step) -> bool:
-    """Whether a step is how the next begins: "bends down and picks it up", "raises the hand and waves"."""
+    """Whether a step is the beginning of the next: "bends down and picks it up", "raises the hand and waves"."""
     if before.count or before.seconds or before.facing or before.place:
         return False
     if step.lower == "pick_up":
@@ -102,7 +115,7 @@ def _only_begins(before: Step, step: Step) -> bool:
 
 
 def _facing_onward(before: Step, step: Step) -> Step:
-    """Who turns, opens a door or 'walks on', goes ahead."""
+    """After turning, opening a door or 'walks on', the walk leads ahead."""
     both_turn = before.lower == step.lower == "turn" and (isinstance(before.direction, Side) or before.turn_deg)
     if both_turn and step.direction == Shape.AROUND and "back" in step.clause.split():  # as far as the turn before
         return replace(step, direction=OPPOSITE.get(before.direction), turn_deg=-before.turn_deg)
@@ -136,7 +149,7 @@ def _merged_walk(one: Step, other: Step) -> list[Step]:
 
 
 def _joined(one: Step, other: Step) -> list[Step]:
-    """Two simultaneous steps as one; a push or a turn during a walk as what that looks like."""
+    """Two simultaneous steps as one; a push or a turn during a walk is resolved into a sequence."""
     if one.lower == other.lower and one.moves and not (one.upper and other.upper):
         return _merged_walk(one, other)
     pair = {one.lower, other.lower}
@@ -175,7 +188,7 @@ def _goes_together(before: ParsedClause, parsed: ParsedClause) -> bool:
         return True
     if parsed.link == "and":
         if one.upper in _HELD and other.upper and {one.hand, other.hand} == {"left", "right"}:
-            return True  # one hand stays where it is
+            return True  # one hand stays in place
         if one.lower in ("sit", "stand") and not one.upper and other.upper and other.lower == "stand":
             pauses = any(word.lemma in _PAUSING for word in before.words)
             return one.lower == "sit" or (before.form == parsed.form and not pauses)
@@ -195,7 +208,7 @@ def _is_meanwhile(one: Step, other: Step) -> bool:
 
 
 def _reads_as_at_once(before: ParsedClause, parsed: ParsedClause, *, is_last: bool) -> bool:
-    """Whether a participle after a comma names what is done during the movement before, on the spot."""
+    """Whether a participle after a comma is simultaneous with the previous movement on the spot."""
     step = parsed.steps[0]
     on_the_spot = bool(step.upper) or not (step.moves or step.lower in ("turn", "stand", "stumble", "fall"))
     if parsed.link == "and":  # "is walking and bending", not "is walking and then bends", "sitting and standing up"
@@ -217,9 +230,16 @@ def _can_overlay(one: Step, other: Step, *, in_two: bool = True) -> bool:
 
 
 def assign_hands(one: Step, other: Step) -> tuple[Step, Step] | None:
-    """Two hand activities with a hand each, the one that the head goes with first; None where both need one hand.
+    """Assigns a hand to each of two hand activities, the one that involves the head first.
 
-    A hand that the sentence leaves open is the other one's opposite, of two the right for the first.
+    A hand that the sentence leaves open is the opposite of the other one; of two open ones the first gets the right.
+
+    Args:
+        one: Step with a hand activity.
+        other: Step with another hand activity.
+
+    Returns:
+        The steps with hands; None if both need one hand.
     """
     if not {one.upper, other.upper} <= ONE_ARMED or one.other_hand is not None or other.other_hand is not None:
         return None
@@ -232,9 +252,14 @@ def assign_hands(one: Step, other: Step) -> tuple[Step, Step] | None:
 
 
 def overlay(one: Step, other: Step) -> Step:
-    """Both steps at once: legs of one, arms of the other, or an arm of each.
+    """Combines two steps: legs of one, arms of the other, or an arm of each.
 
-    Raises InputError where both need the same limbs.
+    Args:
+        one: First step in the sentence.
+        other: Second step.
+
+    Raises:
+        InputError: If both need the same limbs.
     """
     if {one.lower, other.lower} <= {"stand"} and not (one.upper and other.upper):
         pass

@@ -1,7 +1,7 @@
-"""Spelling correction: a long unknown word one edit away from exactly one known word is read as that word.
+"""Spelling correction: a long unknown word one edit away from exactly one known word is corrected to it.
 
-Of short words only slips are corrected that hardly ever make another English word: neighbours swapped, a letter typed
-twice, and a missing letter without which the word cannot be spoken ("wlks").
+In short words only slips are corrected that hardly ever form another English word: swapped neighbours, a doubled
+letter, and a missing letter without which the word is unpronounceable ("wlks").
 Reference: docs/decisions/reading-sentences.md.
 """
 
@@ -25,14 +25,21 @@ from mmweaver.motion.language.rewrite_rules import words_of_phrases
 
 LONG = 6  # letters; shorter words have too many neighbours
 SHORTEST = 4
-# No vowel, or two consonants with which no English word begins.
+# No vowel, or two consonants that begin no English word.
 UNSPEAKABLE = re.compile(
     r"[^aeiouy]+$|(?!b[lr]|c[hlr]|d[rw]|f[lr]|g[hlnr]|k[lnr]|p[hlrs]|rh|s[chklmnpqtvw]|t[hrsw]|w[hr])[^aeiouy]{2}"
 )
 
 
 def correct_spelling(text: str) -> tuple[str, list[str]]:
-    """The text with misspellings corrected, and a note for each."""
+    """Corrects misspellings.
+
+    Args:
+        text: The sentence.
+
+    Returns:
+        The corrected text, and a note per correction.
+    """
     notes: list[str] = []
 
     def replace_word(match: re.Match[str]) -> str:
@@ -49,7 +56,10 @@ def correct_spelling(text: str) -> tuple[str, list[str]]:
 
 @lru_cache(maxsize=4096)
 def corrected_word(word: str) -> str:
-    """The known word that an unknown one is a misspelling of, or "".
+    """The known word of which an unknown one is a misspelling, or "".
+
+    Args:
+        word: Word in lower case.
 
     >>> corrected_word("forwads"), corrected_word("walks"), corrected_word("sings"), corrected_word("wlks")
     ('forwards', '', '', 'walks')
@@ -66,7 +76,7 @@ def corrected_word(word: str) -> str:
 
 
 def _is_slip(word: str, other: str) -> bool:
-    """Whether a short word is another one with neighbours swapped, a letter twice or one missing that it needs."""
+    """Whether a short word differs by swapped neighbours, a doubled letter, or a missing letter that it needs."""
     if len(other) < SHORTEST or other[0] != word[0] or not _one_edit_apart(word, other):
         return False
     if len(word) == len(other):
@@ -123,7 +133,7 @@ def _other_forms() -> frozenset[str]:
 
 
 def forget_known_words() -> None:
-    """For when a verb was added."""
+    """Clears the caches after a verb was added."""
     for remembered in (_movements, _whole_words, _known):
         remembered.cache_clear()
     corrected_word.cache_clear()

@@ -1,6 +1,6 @@
-"""What steps show, wholly, in words: limb and side, way, posture, speed, count, seconds, place, what is done at once.
+"""Complete descriptions of steps: limb and side, direction, posture, speed, count, seconds, place, overlays.
 
-They follow what `motion/animation/library` and `motion/planning` make of each field, not what a sentence said of it.
+They follow what `motion/animation/library` and `motion/planning` make of each field, not the wording of the sentence.
 """
 
 from collections.abc import Iterable, Sequence
@@ -10,7 +10,7 @@ from itertools import groupby
 from mmweaver.motion.language.activities import BY_KEY, words_in
 from mmweaver.motion.language.plan import NOT_DONE, ClauseRecord, Shape, Step, Way
 
-# Done once where the sentence has no number, though they do not end the step; again and again within two seconds.
+# Done once without a number, though they do not end the step; and repeatedly, within two seconds each.
 _ONCE = words_in("lunge roll_over roll_in_bed raise point swipe")
 _RHYTHMIC = words_in(
     """
@@ -23,7 +23,12 @@ _SMALL_NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "
 
 
 def frequency_text(step: Step, key: str) -> str:
-    """How often an activity is repeated, where it can be."""
+    """Wording of the repetitions of an activity; "" if it has none.
+
+    Args:
+        step: The step.
+        key: Key of the activity.
+    """
     activity = BY_KEY[key]
     if activity.counted_s is None or key in PACES or step.style in ("held", "released"):
         return ""
@@ -38,10 +43,12 @@ def frequency_text(step: Step, key: str) -> str:
 
 
 def times_said(count: int) -> str:
+    """Words for a number of repetitions: once, twice, three times."""
     return {1: "once", 2: "twice"}.get(count, f"{_number(count)} times")
 
 
 def steps_said(count: int) -> str:
+    """Words for a number of paces: one step, two steps."""
     return "one step" if count == 1 else f"{_number(count)} steps"
 
 
@@ -69,7 +76,11 @@ _LYING = words_in("lie lie_down fall")
 
 
 def body_phrase(step: Step) -> str:
-    """A body activity: 'walking three steps backwards', 'lunging ahead with the left leg twice'."""
+    """Describes a body activity: 'walking three steps backwards', 'lunging ahead with the left leg twice'.
+
+    Args:
+        step: The step.
+    """
     name = BY_KEY[step.lower].shown or BY_KEY[step.lower].name
     if step.lower == "jog" and step.style != "jog":
         name = "running"
@@ -89,7 +100,7 @@ def body_phrase(step: Step) -> str:
 
 
 def _way(step: Step) -> str:
-    """Where it goes, leans or lies, and on what."""
+    """Direction, support or side of lying of a step."""
     if step.lower in _LYING:
         return f" {_ONTO.get(step.style, 'on the back')}"
     if step.lower == "kneel_up" and step.style == "knee":
@@ -119,7 +130,7 @@ def _way(step: Step) -> str:
 
 
 def _going(step: Step) -> str:
-    """Where something leads that changes the position on the floor."""
+    """Destination or direction of a step that changes the position on the floor."""
     if step.direction == Shape.CIRCLE:
         return f" in a circle{_round(step)}"
     if step.arc_deg:
@@ -141,7 +152,7 @@ def _round(step: Step) -> str:
 
 
 def _turn(step: Step) -> str:
-    """Which way a turn goes and how far, or what the person faces then."""
+    """Direction and angle of a turn, or what the person then faces."""
     if step.facing:
         facing = {"towards": "to face the radar", "away": "to face away from the radar"}
         aim = f"to face {step.facing} in the photo" if step.facing in _SIDES else f"to face the {step.facing}"
@@ -163,7 +174,7 @@ _ONE_HANDED = words_in(
     tennis_serve pick_up put_down hook uppercut
     """
 )
-_OF_BOTH = {  # activities that move one hand where the sentence says both
+_OF_BOTH = {  # activities that move one hand even if the sentence names both
     **dict.fromkeys(words_in("eat phone brush_teeth comb wipe write stir open_door point throw"), "right"),
     **dict.fromkeys(words_in("swipe draw_circle draw_z yawn cough vacuum drink"), "left"),
 }
@@ -174,7 +185,12 @@ _HEIGHTS = {"high": " high up", "up": " upwards", "down": " downwards", "under":
 
 
 def hand_phrase(step: Step, part: Step) -> str:
-    """What one activity of the hands shows, with its limb; `step` is the whole of it."""
+    """Describes one hand activity with its limb.
+
+    Args:
+        step: The whole step.
+        part: The step or the activity of the other hand.
+    """
     key, hand = part.upper, hand_of(part, part.upper)
     name = BY_KEY[key].shown or BY_KEY[key].name
     if key == "arms_out":
@@ -183,7 +199,7 @@ def hand_phrase(step: Step, part: Step) -> str:
         name = f"holding {arms} out {way}"
     elif key == "hips":
         name = "holding the hands on the hips" if hand == "both" else f"holding the {hand} hand on the hip"
-    elif key == "raise_hold" and step.lower != "stand":  # it is up already, or comes up meanwhile
+    elif key == "raise_hold" and step.lower != "stand":  # already up, or coming up meanwhile
         name = "holding {arm} up overhead"
     elif key == "look_around":
         name = {"down": "looking down", **{side: f"looking to the {side} in the photo" for side in _SIDES}}.get(
@@ -206,28 +222,38 @@ def hand_phrase(step: Step, part: Step) -> str:
 
 
 def hand_suffix(hand: str) -> str:
+    """Words for the acting hand, such as " with both hands"."""
     return {"both": " with both hands", "one": " with one hand"}.get(hand, f" with the {hand} hand")
 
 
 def hand_of(part: Step, key: str) -> str:
-    """The hand that acts: left, right, both, "one" where the seed chooses it, "" for what needs both anyway."""
+    """The hand that acts: left, right, both, "one" if the seed chooses it, "" if both are needed anyway.
+
+    Args:
+        part: The step.
+        key: Key of the activity.
+    """
     if key in _ONE_HANDED:
         return _OF_BOTH.get(key, "both") if part.hand == "both" else part.hand or "one"
-    if key in ("punch", "text"):  # a phone is in one hand or both where the sentence names none
+    if key in ("punch", "text"):  # a phone is in one hand or both if none is named
         return part.hand or (("one" if part.count == 1 else "both") if key == "punch" else "")
     return (part.hand or "both") if key in _BOTH else ""
 
 
 def add_shown_text(records: Sequence[ClauseRecord], steps: Sequence[Step]) -> tuple[ClauseRecord, ...]:
-    """The records with what each clause is shown as: 'then waving' where that begins after another step.
+    """Adds to each record what its clause is shown as: 'then waving' if it begins after another step.
 
-    Records that said so of other steps, before these were cut or placed, say it of these.
+    Descriptions of steps that were since cut or placed are updated.
+
+    Args:
+        records: Records of the clauses.
+        steps: Final steps.
     """
-    shown, seen = [], {0}  # what begins with the first step follows nothing
+    shown, seen = [], {0}  # the first step follows nothing
     for places in _places_of_each(len(records), steps):
         shown.append("then " * bool(places and places[0] not in seen) + _at(places, steps))
         seen |= {*places}
-    for number, record in enumerate(records):  # "turns left while walking": the step is that of the other clause
+    for number, record in enumerate(records):  # "turns left while walking": the step belongs to the other clause
         if record.status != NOT_DONE and not shown[number]:
             shown[number] = next(filter(None, (*shown[number + 1 :], *shown[:number][::-1])), "")
     return tuple(_shown_as(record, words) for record, words in zip(records, shown, strict=True))
@@ -240,9 +266,13 @@ def _shown_as(record: ClauseRecord, shown: str) -> ClauseRecord:
 
 
 def steps_of_each(clauses: int, steps: Sequence[Step]) -> list[list[Step]]:
-    """The steps of each of so many clauses; one that no clause names counts with the next one that a clause does.
+    """The steps of each clause; a step without a clause counts with the next one that has one.
 
     A step of several clauses counts with those that have no other of its kind: "walks forward, then backward".
+
+    Args:
+        clauses: Number of clauses.
+        steps: Final steps.
     """
     return [[steps[place] for place in places] for places in _places_of_each(clauses, steps)]
 
@@ -266,7 +296,7 @@ def _places_of_each(clauses: int, steps: Sequence[Step]) -> list[list[int]]:
 
 
 def _at(places: Sequence[int], steps: Sequence[Step]) -> str:
-    """The steps at these places in their order; others come between them where it says "later"."""
+    """The steps at these places in order; "later" marks others in between."""
     runs: list[list[Step]] = []
     for k, place in enumerate(places):
         if k and place == places[k - 1] + 1:
@@ -277,7 +307,11 @@ def _at(places: Sequence[int], steps: Sequence[Step]) -> str:
 
 
 def in_turn(steps: Iterable[Step]) -> str:
-    """Steps in the order in which they are shown: 'walking backwards, then standing'."""
+    """Describes steps in order: 'walking backwards, then standing'.
+
+    Args:
+        steps: Steps in temporal order; repetitions are summarized.
+    """
     names = [doing(step) for step in steps]
     for length in range(1, len(names) // 2 + 1):
         times, rest = divmod(len(names), length)
@@ -288,7 +322,11 @@ def in_turn(steps: Iterable[Step]) -> str:
 
 
 def doing(step: Step) -> str:
-    """All that a step shows: 'walking three steps backwards', 'sitting on the sofa while waving with one hand'."""
+    """Complete description of a step: 'walking three steps backwards', 'sitting on the sofa while waving'.
+
+    Args:
+        step: The step.
+    """
     body = "" if step.lower == "stand" and step.upper else body_phrase(step)
     parts = [body, *(hand_phrase(step, part) for part in step.each if part.upper)]
     facing = {"towards": "the radar", "away": "away from the radar"}.get(step.facing) or (

@@ -1,4 +1,4 @@
-"""Error message for a clause that is not understood: the most similar known activity, and where all are listed."""
+"""Error message of a clause that is not understood: the most similar known activity, and where all are listed."""
 
 from difflib import SequenceMatcher, get_close_matches
 from functools import cache
@@ -8,8 +8,8 @@ from mmweaver.motion.language.described_person import PEOPLE
 from mmweaver.motion.language.lexicon import ALL_WORDS, FILLERS, LIGHT, OWN, PRONOUNS
 from mmweaver.motion.language.words import word_of
 
-NEAR = 0.75  # least similarity of a word to one of a suggestion
-# Movements over the hands or through the air, of which none is known.
+NEAR = 0.75  # minimum similarity of a word to one of a suggestion
+# Movements over the hands or through the air, none of which is known.
 ON_HANDS = words_in("handstand handstands headstand headstands cartwheel cartwheels flip backflip backflips handspring")
 _EMPTY = PRONOUNS | PEOPLE | FILLERS | LIGHT  # words that name no movement
 
@@ -18,8 +18,8 @@ def not_known(clause_text: str, word: str = "") -> str:
     """The message about a clause that is not understood.
 
     Args:
-        clause_text: the words of the clause.
-        word: the word that is not known, if it is one.
+        clause_text: Words of the clause.
+        word: The unknown word, if there is a single one.
 
     Returns:
         One line: what was not understood, the nearest known activity, and how many more there are.
@@ -42,7 +42,14 @@ def not_known(clause_text: str, word: str = "") -> str:
 
 @cache
 def nearest_example(clause_text: str) -> str:
-    """The example of the activity that has most words like the unknown ones of a clause, "" where it has few."""
+    """Example of the known activity most similar to a clause.
+
+    Args:
+        clause_text: Words of the clause.
+
+    Returns:
+        Example sentence; "" if too few words are similar.
+    """
     words = [word for word in clause_text.lower().replace("_", " ").split() if word not in _EMPTY | ALL_WORDS | OWN]
     asked = [word for word in words if not word_of(word).is_verb] or words
     found = dict.fromkeys(BY_KEY, 0.0)
@@ -61,12 +68,12 @@ def _near(word: str) -> list[str]:
 
 @cache
 def _words_of_activities() -> dict[str, frozenset[str]]:
-    """The words of each activity's example and paraphrases that name what is done, or with what."""
+    """Content words of each activity's example and paraphrases."""
     texts = {key: " ".join((activity.example, *PARAPHRASES.get(key, ()))) for key, activity in BY_KEY.items()}
     return {key: words_in(text.lower()) - _EMPTY for key, text in texts.items()}
 
 
 def forget_suggestions() -> None:
-    """For when an activity was added."""
+    """Clears the caches after an activity was added."""
     for kept in (nearest_example, _words_of_activities):
         kept.cache_clear()

@@ -1,4 +1,4 @@
-"""Scheduling of a plan: natural durations, stretched or compressed into the given time, repeated or cut by it."""
+"""Scheduling of a plan: natural durations, stretched, compressed, repeated or cut to the given time."""
 
 import math
 from dataclasses import replace
@@ -10,21 +10,31 @@ from mmweaver.motion.language.sentence_parser import parse_sentence
 from mmweaver.motion.language.step_names import PACES, add_shown_text
 
 LONGEST_S = 600.0
-SHORTEST_SHARE = 0.5  # of a movement's least time: what is shorter does not look like it
-PACING_S = 5.5  # of "walks to and fro": there and back
+SHORTEST_SHARE = 0.5  # of a movement's minimum time, below which it is not recognizable
+PACING_S = 5.5  # "walks to and fro": there and back
 CRAWLING_TO_AND_FRO_S = 9.0
-TURN_M = 0.6  # a corner of a path takes as long as so many metres
-SHORTEST_OF_SECONDS_S = 0.3  # of what the sentence gives a time
+TURN_M = 0.6  # a corner of a path takes as long as this distance
+SHORTEST_OF_SECONDS_S = 0.3  # of a step with a stated duration
 HELD_POSTURES = ("stand", "sit", "kneel", "lie", "lie_on_seat", "recline")
-FALLING_ON_S = (0.8, 1.0)  # least and natural time of a stumble that ends in a fall
-REPEATED_FROM = 2  # a sentence that fits so often into the time is repeated
+FALLING_ON_S = (0.8, 1.0)  # minimum and natural time of a stumble that ends in a fall
+REPEATED_FROM = 2  # a sentence that fits this often into the time is repeated
 
 
 def plan_motion(text: str, duration_s: float | None = None) -> MotionPlan:
-    """Parses a sentence and schedules its steps; without a duration they take as long as is natural.
+    """Parses a sentence and schedules its steps; the result is the input of `compose`.
 
-    In a duration that is much longer than the sentence needs it is repeated where it can be; see `schedule` for
-    shorter ones. This is the plan that `compose` takes. Raises InputError as `parse` and `schedule` do.
+    If the duration is much longer than needed, the sentence is repeated where possible; see `schedule` for shorter
+    ones.
+
+    Args:
+        text: The sentence.
+        duration_s: Duration in seconds; None for the natural one.
+
+    Returns:
+        The scheduled plan.
+
+    Raises:
+        InputError: As in `parse` and `schedule`.
 
     >>> plan = plan_motion("a person bows, then waves", 4.0)
     >>> [(step.name, round(step.start_s, 2), round(step.end_s, 2)) for step in plan.steps]
@@ -37,11 +47,20 @@ def plan_motion(text: str, duration_s: float | None = None) -> MotionPlan:
 
 
 def schedule(plan: MotionPlan, duration_s: float) -> MotionPlan:
-    """Gives every step of a plan its start and end.
+    """Assigns start and end to every step of a plan.
 
     What does not fit is cut at the end: fewer repetitions, the beginning of a movement, no more movements after it;
-    notes and `clauses` say so. Raises InputError for a duration that is not positive or above `LONGEST_S`, and for one
-    in which nothing sensible of the first movement would be seen.
+    notes and `clauses` report it.
+
+    Args:
+        plan: Parsed plan.
+        duration_s: Duration in seconds, above 0 and up to `LONGEST_S`.
+
+    Returns:
+        The scheduled plan.
+
+    Raises:
+        InputError: If the duration is out of range, or too short for the first movement to be recognizable.
     """
     _check(duration_s)
     plan = _cut(plan, duration_s)
@@ -60,17 +79,39 @@ def _check(duration_s: float) -> None:
 
 
 def natural_s(plan: MotionPlan) -> float:
-    """How long a plan takes when no duration is given, in seconds."""
+    """Natural duration of a plan at the person's pace.
+
+    Args:
+        plan: Parsed plan.
+
+    Returns:
+        Seconds.
+    """
     return sum(max(_limits(step)[1] / step.pace, _limits(step)[0]) for step in plan.steps)
 
 
 def least_s(plan: MotionPlan) -> float:
-    """The shortest time in which a plan can be shown, in seconds."""
+    """Minimum duration in which a plan can be shown.
+
+    Args:
+        plan: Parsed plan.
+
+    Returns:
+        Seconds.
+    """
     return sum(_limits(step)[0] for step in plan.steps)
 
 
 def repeated(plan: MotionPlan, duration_s: float) -> MotionPlan:
-    """The plan as often as it fits into a duration, where every step has an end and the last leads to the first."""
+    """Repeats a plan as often as it fits into a duration, if every step has an end and the last leads to the first.
+
+    Args:
+        plan: Parsed plan.
+        duration_s: Duration in seconds.
+
+    Returns:
+        The repeated plan with a note; `plan` itself if it cannot be repeated.
+    """
     _check(duration_s)
     natural = natural_s(plan)
     times = int(duration_s / natural + 1e-6)
@@ -89,7 +130,7 @@ def _posture_before(step: Step) -> str:
 
 
 def _cut(plan: MotionPlan, duration_s: float) -> MotionPlan:
-    """The steps that fit into a duration in their least times; the last of them perhaps in part."""
+    """The steps that fit into a duration in their minimum times; the last of them perhaps in part."""
     if least_s(plan) <= duration_s + 1e-9:
         return plan
     kept: list[Step] = []
@@ -111,7 +152,7 @@ def _cut(plan: MotionPlan, duration_s: float) -> MotionPlan:
 
 
 def _fitting(step: Step, left_s: float, *, is_first: bool) -> Step | None:
-    """The step as it fits into the time that is left: fewer times, shorter, only its beginning, or not at all."""
+    """The step as it fits into the remaining time: fewer repetitions, shorter, only its beginning, or not at all."""
     least = _limits(step)[0]
     if least <= left_s + 1e-9:
         return step
@@ -127,7 +168,7 @@ def _fitting(step: Step, left_s: float, *, is_first: bool) -> Step | None:
 
 
 def _shortest_s(step: Step) -> float:
-    """The shortest time in which something of a first step is seen: any, of one that goes on as it begins."""
+    """Minimum time in which a first step is recognizable: none for one that continues as it begins."""
     whole = BY_KEY[step.lower]
     is_whole = whole.once or (whole.counted_s is not None and step.lower not in PACES)  # a squat
     if not is_whole and (step.lower != "stand" or not step.upper or not BY_KEY[step.upper].once):
@@ -136,14 +177,14 @@ def _shortest_s(step: Step) -> float:
 
 
 def _shortest_later_s(step: Step) -> float:
-    """The shortest time that is left for a step after others."""
+    """Minimum time left for a step after others."""
     if step.seconds:
         return min(SHORTEST_OF_SECONDS_S, step.seconds)
     return SHORTEST_SHARE * min(_limits(replace(step, count=count))[0] for count in {0, min(step.count, 1)})
 
 
 def _record_cut(plan: MotionPlan, wanted: tuple[Step, ...], duration_s: float) -> MotionPlan:
-    """Says in notes and clause records what a cut left out."""
+    """Reports in notes and clause records what a cut has dropped."""
     notes, clauses = list(plan.notes), list(plan.clauses)
 
     def record(step: Step, status: str, how: str) -> None:
@@ -173,21 +214,21 @@ def _seconds_text(seconds: float) -> str:
 
 
 def _is_held(step: Step) -> bool:
-    """Whether a step is a posture that is whole in any moment."""
+    """Whether a step is a posture that is complete at any moment."""
     return step.lower in HELD_POSTURES and not step.upper
 
 
 def _limits(step: Step) -> tuple[float, float]:
-    """Least and natural duration of a step, in seconds: longer for 'slowly', shorter for 'quickly' on the spot."""
+    """Minimum and natural duration of a step in seconds: longer for 'slowly', shorter for 'quickly' on the spot."""
     least, natural = _usual_limits(step)
-    if not step.speed or step.seconds or step.moves:  # who travels does so at another speed for the same time
+    if not step.speed or step.seconds or step.moves:  # travelling takes the same time at another speed
         return least, natural
-    slower = 1.0 if step.count and step.speed < 0 else (1.5, 1.0, 0.75)[step.speed + 1]  # counted: it is in the count
+    slower = 1.0 if step.count and step.speed < 0 else (1.5, 1.0, 0.75)[step.speed + 1]  # counted: in the count
     return least, max(slower * natural, least)
 
 
 def _usual_limits(step: Step) -> tuple[float, float]:
-    """Least and natural duration of a step, in seconds; only walks and counted movements take the speed in."""
+    """Minimum and natural duration of a step in seconds; speed affects only walks and counted movements here."""
     if step.other_hand is not None:
         both = [_usual_limits(replace(part, lower=step.lower, other_hand=None)) for part in step.each]
         return max(least for least, _ in both), max(natural for _, natural in both)
@@ -219,12 +260,12 @@ def _usual_limits(step: Step) -> tuple[float, float]:
         slower = 1.25 if step.speed < 0 else 1.0
         return step.count * least + edges, (step.count * natural + edges) * slower
     under = BY_KEY[step.lower]
-    is_whole = under.once or bool(under.counted_s and not under.moves)  # a squat is not left halfway
+    is_whole = under.once or bool(under.counted_s and not under.moves)  # a squat is completed
     return max(doing.least_s, under.least_s * is_whole), max(doing.natural_s, under.natural_s * is_whole)
 
 
 def _circle_limits(step: Step) -> tuple[float, float]:
-    """Least and natural duration of going round in a circle, as often as the sentence says, in seconds."""
+    """Minimum and natural duration of walking in a circle, as many rounds as stated, in seconds."""
     rounds = max(abs(step.arc_deg) / 360, 1.0)
     speed_mps = {"jog": 1.6, "walk": 1.1, "crawl": 0.35, "hop": 0.5, "hop_one_leg": 0.5}.get(step.lower, 0.7) * (
         0.7,
@@ -240,13 +281,13 @@ def _is_done_once(step: Step) -> bool:
 
 
 def is_elastic(step: Step) -> bool:
-    """Whether a step can go on for as long as there is time."""
+    """Whether a step can continue for any time."""
     rounds = step.direction == Shape.CIRCLE and abs(step.arc_deg) > 360
     return not (_is_done_once(step) or step.count or step.seconds or step.distance_m or rounds)
 
 
 def _spans(steps: tuple[Step, ...], duration_s: float) -> list[float]:
-    """Seconds of each step: between least and natural if time is short, else spare time goes to elastic steps."""
+    """Seconds of each step: between minimum and natural if time is short, else spare time goes to elastic steps."""
     limits: list[tuple[float, float]] = [_limits(step) for step in steps]
     least, natural = sum(limit[0] for limit in limits), sum(limit[1] for limit in limits)
     if duration_s <= natural:
@@ -254,7 +295,7 @@ def _spans(steps: tuple[Step, ...], duration_s: float) -> list[float]:
         return [low + share * (high - low) for low, high in limits]
     elastic = [is_elastic(step) for step in steps]
     if not any(elastic):
-        elastic = [k == len(steps) - 1 for k in range(len(steps))]  # the last pose is held
+        elastic = [k == len(steps) - 1 for k in range(len(steps))]  # hold the last pose
     weight = sum(limit[1] for limit, free in zip(limits, elastic, strict=True) if free)
     extra = duration_s - natural
     return [high + (extra * high / weight if free else 0.0) for (_, high), free in zip(limits, elastic, strict=True)]

@@ -1,7 +1,7 @@
-"""One check of honesty: every word of the sentence that says what is seen is shown by a final step, or reported.
+"""Verifies coverage: every meaningful word of the sentence is shown by a final step, or reported.
 
-The words are those of the sentence as it was given, whatever rewriting has made of them; each is compared with the
-steps of the clause that it stands in. Verbs and ways need a step of their own: "jumps, then jumps again" is two.
+The words are those of the original sentence, before rewriting; each is compared with the steps of its clause. Verbs
+and directions need a step each: "jumps, then jumps again" is two.
 """
 
 import re
@@ -63,14 +63,14 @@ _SILENT = frozenset().union(
 )
 _LIMBS = ARMS | LEGS | words_in("palm forearm elbow shoulder hip ear eye cheek thigh heel wrist fist finger ankle toe")
 _SIDE = re.compile(r"(left|right)(?:wards?)?")
-# Getting to one's feet, lengths in feet and "right after that" name no limb and no side.
+# "to one's feet", lengths in feet and "right after that" name no limb and no side.
 _NAMES_NO_LIMB = re.compile(
     r"\b(?:to|on|onto) (?:his|her|their|its|the|two|both)(?: (?:own|two))? feet\b"
     r"|\b(?:\d+|two|three|four|five|ten|few) feet\b|\bright (?:after|before|now|there)\b"
     r"|\bshoulders?[- ](?:width|height|level|high)\b"
 )
-_NO_MOVEMENT = re.compile(r"like|though|although|if|not|never|without|\w+n't")  # before what is compared or denied
-_MANY_TIMES = 4  # slots of a step that goes to and fro
+_NO_MOVEMENT = re.compile(r"like|though|although|if|not|never|without|\w+n't")  # precedes comparisons and negations
+_MANY_TIMES = 4  # slots of a step that paces
 _AHEAD, _BACK = words_in("forward forwards ahead"), words_in("backward backwards back")
 
 
@@ -105,16 +105,16 @@ class _Token:
 def not_covered(
     text: str, steps: Sequence[Step], records: dict[int, ClauseRecord], approximated: set[int]
 ) -> list[tuple[int, str]]:
-    """What the steps do not show of a sentence.
+    """Finds what the steps do not show of a sentence.
 
     Args:
-        text: the sentence as it was given, in lower case.
-        steps: the final steps, each hand by itself (`Step.each`).
-        records: the record of each clause by its number.
-        approximated: clauses whose record says already that something else is shown.
+        text: The original sentence, in lower case.
+        steps: Final steps, each hand separately (`Step.each`).
+        records: Record of each clause by its number.
+        approximated: Clauses whose record already reports an approximation.
 
     Returns:
-        (number of the clause, what is not shown) of each word that no step accounts for.
+        (Number of the clause, what is not shown) for each word that no step accounts for.
     """
     tokens = _tokens(text, steps, records)
     lost: list[tuple[int, str]] = []
@@ -132,7 +132,7 @@ def not_covered(
 
 
 def _steps_after_rising(steps: Sequence[Step]) -> Iterator[Step]:
-    """Steps before which somebody gets up only because the library does the movement standing."""
+    """Steps before which the body gets up only because the library performs them standing."""
     for before, after in pairwise(steps):
         on_feet = after.lower in ("walk", "jog", "turn", "sidestep", "leap", "stand") and not after.upper
         rises = before.lower in ("stand_up", "kneel_up", "get_up", "sit_up") and not before.clauses
@@ -156,7 +156,7 @@ def _tokens(text: str, steps: Sequence[Step], records: dict[int, ClauseRecord]) 
 
 
 def _doing(step: Step) -> set[str]:
-    """The activities of a step, without the standing during an activity of the hands."""
+    """The activities of a step, without standing during a hand activity."""
     return {step.upper} if step.upper and step.lower == "stand" else {step.lower, step.upper} - {""}
 
 
@@ -179,7 +179,7 @@ def _moves_limb(step: Step, side: str, *, is_hand: bool) -> bool:
 
 
 def _side(token: _Token) -> str:
-    """A side that something goes to."""
+    """A side as a direction."""
     side = _SIDE.fullmatch(token.text)
     if side is None or _LIMBS & {*token.after(2)}:
         return ""
@@ -212,7 +212,7 @@ def _goes_aside(step: Step) -> bool:
 
 
 def _number(token: _Token) -> str:
-    """How often something is done, or with how many steps."""
+    """A number of repetitions or steps."""
     text, own = token.text, token.own
     following = [
         word_of(word) for word in token.words_after(3) if word not in SIZES | SPEEDS.keys() | {"left", "right"}
@@ -249,7 +249,7 @@ def _numbers_of(step: Step) -> Iterator[float]:
 
 
 def _turn(token: _Token) -> str:
-    """Which way round, or by which angle."""
+    """Direction or angle of a turn."""
     text, own = token.text, token.own
     if text.endswith("clockwise"):
         counter = text != "clockwise" or {"counter", "anti", "against"} & {*token.before(2)}
@@ -276,7 +276,7 @@ def _angles(step: Step) -> set[float]:
 
 
 def _uses_both(step: Step) -> bool:
-    """Whether both hands or both legs do it."""
+    """Whether both hands or both legs act."""
     if step.upper:
         return hand_of(step, step.upper) in ("both", "")
     in_turn = step.count > 1 and step.lower in ("lunge", "walking_lunge")
@@ -284,7 +284,7 @@ def _uses_both(step: Step) -> bool:
     return in_turn or on_both or step.lower not in _SETS["single_foot"]
 
 
-# What shows a word besides the activities of its row in the table.
+# What shows a word in addition to the activities of its row in the table.
 _BY_FIELD: dict[str, Callable[[Step], bool]] = {
     "ahead": lambda step: _goes(step, "ahead"),
     "back": lambda step: _goes(step, "back"),
@@ -309,7 +309,7 @@ _BY_FIELD: dict[str, Callable[[Step], bool]] = {
 
 
 def _way(token: _Token) -> str:
-    """A part of the body or a way."""
+    """A part of the body or a direction."""
     text = token.text
     keys, *field = _SHOWN_BY.get(text, (frozenset(),))
     by_field = any(_BY_FIELD[name](step) for name in field for step in token.own)
@@ -320,7 +320,7 @@ def _way(token: _Token) -> str:
         return "" if any(step.arms_ahead for step in token.own) else f"{text!r} is not shown"
     before, after = token.before(2), token.after(3)
     in_front_of = before[-1:] == ["in"] and after[:1] == ["of"] and not any(step.upper for step in token.own)
-    names_none = text in ("toward", "towards", "hand") and {"left", "right", "side"} & {*after}  # told by the side
+    names_none = text in ("toward", "towards", "hand") and {"left", "right", "side"} & {*after}  # covered by the side
     rises = text == "up" and {word_of(word).lemma for word in before} & _SETS["rising"]
     return "" if in_front_of or names_none or rises else f"{text!r} is not shown"
 
@@ -349,7 +349,7 @@ def _is_like(step: Step, activity: str) -> bool:
 
 
 def _alike(activity: str, key: str, step: Step | None = None) -> bool:
-    """Whether one activity shows another, or what the grammar makes of it; `step`: a path or a look turns, too."""
+    """Whether one activity shows another, or what the grammar makes of it; with `step`, a bend or a look turns too."""
     bent = step is not None and bool(step.arc_deg or step.facing)
     round_about = activity in ("turn", "bend") and (bent or key in _SETS["rounds"] or key == "look_around")
     return round_about or activity == key or any(activity in group and key in group for group in _ALIKE)
@@ -369,16 +369,16 @@ def _manner(token: _Token) -> str:
 
 
 def _noun(token: _Token) -> str:
-    """A thing or a place that no step has to do with: "on a tight rope"."""
+    """A thing or a place unrelated to any step: "on a tight rope"."""
     is_shown = token.text in _SILENT or not _is_opened(token) or any(_concerns(step, token.text) for step in token.own)
     return "" if is_shown else f"{token.text!r} is not shown"
 
 
 def _is_opened(token: _Token) -> bool:
-    """Whether a word belongs to what a determiner or a preposition opens, after a verb and before the next one."""
+    """Whether a word belongs to a phrase opened by a determiner or preposition, between a verb and the next one."""
     before = [word_of(text) for text in token.before(token.place)]
     if not any(other.is_verb or other.is_going or other.text in ("is", "are", "plays") for other in before):
-        return False  # whoever does it
+        return False  # the subject
     for other in reversed(before):
         if other.text in _SETS["opening"]:
             is_verb = (token.word.is_verb or token.word.is_going) and before[-1].text not in ("a", "an", "the")
@@ -406,7 +406,7 @@ def _concerns(step: Step, noun: str) -> bool:
 
 
 def _again(token: _Token) -> str:
-    """One more of what has been shown: 'then another one', '90 more'."""
+    """A further repetition: 'then another one', '90 more'."""
     is_more = token.text == "another" or (token.text == "more" and not "".join(token.after(1)).endswith("ly"))
     keys = [key for step in token.steps for key in _doing(step)]
     often = len({*keys}) < len(keys) or any(step.count > 1 for step in token.own)
@@ -414,7 +414,7 @@ def _again(token: _Token) -> str:
 
 
 def _back_to(token: _Token) -> str:
-    """The way back to where somebody was."""
+    """The way back to an earlier position."""
     after = token.after(4)
     if token.text != "back" or after[:1] not in (["to"], ["where"]) or _SETS["postures"] & {*after}:
         return ""
@@ -429,7 +429,7 @@ def _back_to(token: _Token) -> str:
 
 
 def _order(token: _Token) -> str:
-    """What comes first where "after" may be an adverb or stand before two movements, and what is done at once."""
+    """Temporal order with an ambiguous "after", and simultaneity."""
     order = [min(step.clauses) for step in token.steps if step.clauses]
     following = [word_of(text) for text in token.after(6)]
     in_turn = len(token.own) > 1 and token.own[-1].lower not in ("stumble", token.own[0].lower)
@@ -449,7 +449,7 @@ _CHECKS = (_limb_side, _side, _number, _turn, _again, _back_to, _order, _way, _v
 
 
 def _unmatched_tokens(tokens: list[_Token], steps: Sequence[Step]) -> Iterator[_Token]:
-    """Verbs and ways that are named more often than steps show them, by bipartite matching."""
+    """Verbs and directions named more often than steps show them, by bipartite matching."""
     mentions = _distinct([(token, _movement(token), _way_named(token)) for token in tokens])
     slots: list[set[int]] = []
     for step in steps:
@@ -476,7 +476,7 @@ def _unmatched_tokens(tokens: list[_Token], steps: Sequence[Step]) -> Iterator[_
 
 
 def _distinct(mentions: list[tuple[_Token, str, str]]) -> list[tuple[_Token, str, str]]:
-    """The mentions without those that only say more of the one before: "walks, walking slowly", "leans and reaches"."""
+    """The mentions without those that only extend the previous one: "walks, walking slowly", "leans and reaches"."""
     found: list[tuple[_Token, str, str]] = []
     last: dict[bool, tuple[_Token, str, str]] = {}
     for mention in mentions:
@@ -497,7 +497,7 @@ def _distinct(mentions: list[tuple[_Token, str, str]]) -> list[tuple[_Token, str
 
 
 def _movement(token: _Token) -> str:
-    """The activity that a word names as a movement by itself, not what is compared with, denied or goes on."""
+    """Activity named as a movement of its own, not compared with, negated or continued."""
     activity, before = _activity(token), token.before(2)
     is_prepared = before[-1:] and before[-1] in _SETS["before_nouns"]
     is_none = any(map(_NO_MOVEMENT.fullmatch, before)) or _SETS["going_on"] & {*before}
@@ -505,7 +505,7 @@ def _movement(token: _Token) -> str:
 
 
 def _way_named(token: _Token) -> str:
-    """left | right | ahead | back of a word that says which way somebody goes, else ""."""
+    """left | right | ahead | back for a word that states a direction of motion, else ""."""
     before, after, side = token.before(3), token.after(3), _SIDE.fullmatch(token.text)
     last, following = "".join(before[-1:]), "".join(after[:1])
     if side is not None:

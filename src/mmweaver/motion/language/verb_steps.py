@@ -1,4 +1,4 @@
-"""From a verb and the modifiers of its clause to a Step, or an error that says why it cannot be shown."""
+"""From a verb and the modifiers of its clause to a Step, or an error if it cannot be shown."""
 
 from dataclasses import replace
 from itertools import pairwise, takewhile
@@ -17,7 +17,7 @@ THINGS_LIFTED = frozenset(["something", "item", "object", "box", "thing", "weigh
 SIDES: dict[Any, float] = {Side.LEFT: 1.0, Side.RIGHT: -1.0}
 SEVERAL_TIMES = 3  # "repeatedly", "several times"
 SLIGHT_TURN_DEG = 45.0  # "turns a little to the left"
-AROUND = frozenset(["past", "behind", "between", "around", "along", "beside"])  # a seat that one does not walk to
+AROUND = frozenset(["past", "behind", "between", "around", "along", "beside"])  # not to a seat
 _TOWARDS = frozenset(["to", "towards", "toward", "at"])
 AIMED = ("point", "look_around")
 _EXERCISES = ("squat", "lunge", "jump", "kick", "side_lunge")
@@ -28,14 +28,24 @@ _SINGLE = words_in(
     stomp
     """
 )
-_HOPPED = (Way.FORWARDS, Way.TOWARDS, Way.AWAY, *Side)  # ways of hopping on one leg
+_HOPPED = (Way.FORWARDS, Way.TOWARDS, Way.AWAY, *Side)  # directions of hopping on one leg
 _AS_HOPPED = {Shape.SPOT: None, Way.BACK: Way.BACKWARDS}
 _AS_STUMBLED = {Way.BACK: Way.BACKWARDS, Way.TOWARDS: Way.FORWARDS, Way.AWAY: Way.BACKWARDS}
 GAITS = ("walk", "jog", "limp", "stagger", "crawl", "walking_lunge")
 
 
 def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
-    """The step of the verb at index `at`. Raises InputError for what would be acted out as something else."""
+    """The step of a verb.
+
+    Args:
+        words: Words of the verb's part of the clause.
+        at: Index of the verb.
+        about: Modifiers of this part.
+        clause_text: Text of the clause.
+
+    Raises:
+        InputError: If it would be acted out as something else.
+    """
     word = words[at]
     lower, upper = ("walk", "") if word.is_going else ACTIVITY_OF_LEMMA[word.lemma]
     texts = {other.text for other in words}
@@ -71,7 +81,7 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
 
 
 def _is_of_several(step: Step, words: list[Word], at: int) -> bool:
-    """Whether an exercise is named in the plural without a number, "does squats", or "jumps up and down"."""
+    """Whether an exercise is a plural without a number ("does squats"), or "jumps up and down"."""
     word = words[at]
     if word.lemma == "jump" and any(one.text == "up_and_down" for one in words[at + 1 : at + 2]):
         is_said = any(one.text == "repeatedly" for one in words)
@@ -102,7 +112,7 @@ def _lifts_a_thing(following: list[Word]) -> bool:
 
 
 def _times_of_a_walk(step: Step, texts: set[str]) -> Step:
-    """'Walks three times' counts no paces; in a circle it counts the rounds."""
+    """'Walks three times' does not count paces; in a circle it counts the rounds."""
     if (
         step.lower not in (*GAITS, *HOPPING)
         or not step.count
@@ -117,7 +127,7 @@ def _times_of_a_walk(step: Step, texts: set[str]) -> Step:
 
 
 def _arms_step(step: Step, texts: set[str]) -> Step:
-    """Which hand moves; raising a leg is another activity."""
+    """The hand that moves; raising a leg is another activity."""
     if step.upper == "raise" and not texts & ARMS:
         if texts & LEGS:
             return replace(step, lower="raise_leg", upper="", hand="")
@@ -128,7 +138,7 @@ def _arms_step(step: Step, texts: set[str]) -> Step:
 
 
 def _goes_somewhere(step: Step, words: list[Word]) -> bool:
-    """Whether somebody who carries something walks: a direction or a place to go to is named."""
+    """Whether somebody who carries something walks: a direction or a destination is named."""
     return bool(target_of(words)) or step.direction not in (None, Shape.SPOT, Way.BACKWARDS)
 
 
@@ -175,7 +185,7 @@ def _going_step(step: Step, words: list[Word], at: int) -> Step:
 
 
 def _bent(step: Step) -> Step:
-    """Angles of a walk are bends of its path; left and right are then the person's own, as of a turn."""
+    """Angles of a walk bend its path; left and right are then the person's own, as in a turn."""
     angle = step.arc_deg or step.turn_deg
     if not angle or step.direction == Shape.CIRCLE:
         return replace(step, turn_deg=0.0)
@@ -186,7 +196,7 @@ def _bent(step: Step) -> Step:
 
 
 def _is_step_aside(step: Step, words: list[Word], at: int) -> bool:
-    """Whether it is done sideways: 'takes one step to the left', but not 'walks to the left'."""
+    """Whether it is a sidestep: 'takes one step to the left', but not 'walks to the left'."""
     noun = words[at].lemma == "step"
     if noun and at + 1 < len(words) and any(word.text in ("step", "steps") for word in words[at + 1 :]):
         return (
@@ -197,7 +207,14 @@ def _is_step_aside(step: Step, words: list[Word], at: int) -> bool:
 
 
 def target_of(words: list[Word]) -> str:
-    """The landmark that a walk leads to: 'to the door', 'towards the open window', 'reaches the table'."""
+    """The landmark that a walk leads to: 'to the door', 'towards the open window', 'reaches the table'.
+
+    Args:
+        words: Words of the clause.
+
+    Returns:
+        Kind of the landmark, or "".
+    """
     for i, word in enumerate(words):
         if word.text in ("to", "towards", "toward", "reaches", "reach", "at", "for", "approaches", "approaching"):
             for after in words[i + 1 : i + 5]:
@@ -262,7 +279,7 @@ def _stumbling_step(step: Step, words: list[Word], at: int) -> Step:
 
 
 def _floor_step(step: Step, words: list[Word], at: int) -> Step:
-    """Lying and falling: on the back unless the clause says forwards, belly or one's own side."""
+    """Lying and falling: on the back unless the clause names forwards, belly or one's own side."""
     if step.seat and step.lower in ("lie", "lie_down"):
         lower = "lie_on_seat" if step.lower == "lie" else "recline"
         return step.straight(lower=lower, count=0)
@@ -276,7 +293,7 @@ def _floor_step(step: Step, words: list[Word], at: int) -> Step:
 
 
 def _falling_off_step(step: Step, words: list[Word], at: int) -> Step:
-    """To the own side that is named, else to the right."""
+    """To the named own side, else to the right."""
     style = step.direction if isinstance(step.direction, Side) else "right"
     return step.straight(style=style, count=0)
 
@@ -305,14 +322,21 @@ def _sideways_step(step: Step, words: list[Word], at: int) -> Step:
 
 
 def _leaning_step(step: Step, words: list[Word], at: int) -> Step:
-    """To the own side that is named, or back; else to both sides in turn."""
+    """To the named own side, or back; otherwise to both sides in turn."""
     direction = Way.BACKWARDS if step.direction in (Way.BACK, Way.BACKWARDS) else step.direction
     direction = direction if direction in (*SIDES, Way.BACKWARDS) else None
     return step.straight(direction, hand="", foot="")
 
 
 def facing_of(words: list[Word]) -> str:
-    """What the person faces during another activity: 'waves facing the radar', 'facing left'."""
+    """What the person faces during another activity: 'waves facing the radar', 'facing left'.
+
+    Args:
+        words: Words of the clause.
+
+    Returns:
+        towards, left, right, away, a kind of landmark, or "".
+    """
     for i, word in enumerate(words):
         if word.text in ("facing", "faces"):
             texts = {other.text for other in words[i + 1 : i + 4]}

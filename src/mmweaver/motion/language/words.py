@@ -1,4 +1,4 @@
-"""Tokenization: phrases become one token, inflected verbs get their lemma."""
+"""Tokenization: phrases become one token, inflected verbs are lemmatized."""
 
 import re
 from dataclasses import dataclass
@@ -15,11 +15,17 @@ _TOKEN = re.compile(r"[a-z_']+[0-9_]*(?:-[a-z]+)*|\d+(?:\.\d+)?|[,;:.!?]")
 
 @dataclass(frozen=True)
 class Word:
-    """One token: the text, the lemma of a known verb (else the text again), and the verb form."""
+    """One token of a sentence.
+
+    Attributes:
+        text: The text.
+        lemma: Lemma of a known verb, else the text again.
+        form: Verb form: base, s, ing or past; "" if it is no known verb.
+    """
 
     text: str
     lemma: str
-    form: str  # base | s | ing | past | "" (no known verb)
+    form: str
 
     @property
     def is_verb(self) -> bool:
@@ -35,7 +41,11 @@ class Word:
 
 
 def words_of(text: str) -> list[Word]:
-    """Words and punctuation marks of a sentence in lower case, known phrases as one token."""
+    """Words and punctuation marks of a sentence in lower case, known phrases as one token.
+
+    Args:
+        text: The sentence.
+    """
     folded = text.lower().replace("\u2019", "'").replace("n't", " not")
     folded = rewritten(mark_places(strip_stature(folded)), "phrases")
     return [word_of(token) for token in _TOKEN.findall(folded)]
@@ -44,6 +54,9 @@ def words_of(text: str) -> list[Word]:
 @lru_cache(maxsize=4096)
 def word_of(token: str) -> Word:
     """Lemma and form of a token.
+
+    Args:
+        token: Token in lower case.
 
     >>> word_of("clapped")
     Word(text='clapped', lemma='clap', form='past')

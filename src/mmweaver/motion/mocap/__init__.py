@@ -1,1 +1,1 @@
-"""Other people's recorded motion, read from files and placed in the room. Start at `read.py`."""
+"""Recorded motion, read from files and placed in the room. Start with `read_motion.py`."""

@@ -9,17 +9,27 @@ from mmweaver.motion.animation.skeleton_proportions import RECORDED_M
 from mmweaver.motion.mocap.clip import body_height
 
 Array = np.ndarray
-# "cmu": that of the CMU collection, whose skeletons are in inches scaled by 0.45 (its FAQ; asf files say length 0.45)
+# "cmu": unit of the CMU collection, whose skeletons are in inches scaled by 0.45 (its FAQ; length 0.45 in asf files)
 UNITS_M = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254, "cmu": 0.0254 / 0.45}
 UPS = ("y", "z", "-y", "-z", "x", "-x")
 CLEAR = 0.8  # share of the body's length that must lie along one axis
 
 
 def unit_of(joints: Float[Array, "frame 22 3"], given: str | float | None, source: str) -> tuple[float, str]:
-    """Metres in one unit of the file, and a note ("" where the unit was given).
+    """Unit of length of a file.
 
-    `given` is a name in UNITS_M or a number of metres. Estimated only where exactly one unit makes the body 1.2 to
-    2.2 m tall. Raises InputError otherwise.
+    Estimated only if exactly one unit makes the body 1.2 to 2.2 m tall.
+
+    Args:
+        joints: Joints in the file's unit, (frame, 22, 3).
+        given: Name in UNITS_M or metres per unit; None estimates it.
+        source: Name of the file in messages.
+
+    Returns:
+        Metres per unit, and a note ("" if the unit was given).
+
+    Raises:
+        InputError: If the unit is unknown or cannot be estimated.
     """
     if given is not None:
         return metres_of(given), ""
@@ -37,7 +47,13 @@ def unit_of(joints: Float[Array, "frame 22 3"], given: str | float | None, sourc
 
 
 def metres_of(given: str | float) -> float:
-    """'cm' -> 0.01; a number of metres stays. Raises InputError.
+    """Metres per unit of a name, such as "cm", or of a number.
+
+    Args:
+        given: Name in UNITS_M, or metres per unit.
+
+    Raises:
+        InputError: If it is neither a known unit nor a plausible number.
 
     >>> metres_of("inch"), metres_of("0.056444")
     (0.0254, 0.056444)
@@ -56,7 +72,19 @@ def metres_of(given: str | float) -> float:
 
 
 def up_of(joints: Float[Array, "frame 22 3"], given: str | None, source: str) -> tuple[str, str]:
-    """The upward axis, and a note where it was estimated from the body."""
+    """Upward axis of a file.
+
+    Args:
+        joints: Joints (frame, 22, 3) in any unit.
+        given: Axis in UPS; None estimates it from the standing body.
+        source: Name of the file in messages.
+
+    Returns:
+        The axis, and a note ("" if the axis was given).
+
+    Raises:
+        InputError: If the axis is unknown or cannot be estimated.
+    """
     if given is not None:
         if given not in UPS:
             raise InputError(f"the upward axis is one of {', '.join(UPS)}, not {given!r}")
@@ -74,7 +102,15 @@ def up_of(joints: Float[Array, "frame 22 3"], given: str | None, source: str) ->
 
 
 def rotate_z_up(joints: Float[Array, "frame 22 3"], up: str) -> Float[Array, "frame 22 3"]:
-    """The joints rotated (never mirrored) so that z is up; y up becomes (x, -z, y)."""
+    """Rotates joints (never mirrors them) so that z is up; y up becomes (x, -z, y).
+
+    Args:
+        joints: Joints (frame, 22, 3).
+        up: Upward axis, in UPS.
+
+    Returns:
+        Joints (frame, 22, 3), z up.
+    """
     x, y, z = (joints[..., axis] for axis in range(3))
     rotated = {"z": (x, y, z), "-z": (x, -y, -z), "y": (x, -z, y), "-y": (x, z, -y), "x": (-z, y, x), "-x": (z, y, -x)}[
         up
@@ -83,7 +119,11 @@ def rotate_z_up(joints: Float[Array, "frame 22 3"], up: str) -> Float[Array, "fr
 
 
 def is_reflected(joints: Float[Array, "frame 22 3"]) -> bool:
-    """Whether left and right are exchanged (left-handed axes), so that the toes point backwards. z up."""
+    """Whether left and right are exchanged (left-handed axes), so that the toes point backwards.
+
+    Args:
+        joints: Joints (frame, 22, 3), z up.
+    """
     across = joints[:, joint("left_hip")] - joints[:, joint("right_hip")]
     across = across + joints[:, joint("left_shoulder")] - joints[:, joint("right_shoulder")]
     ahead = np.stack([across[:, 1], -across[:, 0]], axis=-1)

@@ -1,6 +1,6 @@
 """BVH files: from a hierarchy of offsets and the joint angles of every frame to joint positions.
 
-Files differ in ways that parsers trip over: names with spaces, channels in any order, position channels on every joint,
+Files vary in ways that break parsers: names with spaces, channels in any order, position channels on every joint,
 Windows line ends, no newline at the end (docs/decisions/motion-files.md).
 """
 
@@ -21,7 +21,15 @@ ROTATIONS = {"Xrotation": "X", "Yrotation": "Y", "Zrotation": "Z"}
 
 @dataclass
 class Node:
-    """One joint: its parent's index, its offset, and its channels within each frame."""
+    """One joint of the hierarchy.
+
+    Attributes:
+        name: Name in the file.
+        parent: Index of the parent, -1 for a root.
+        offset: Offset from the parent in the file's unit, (3,).
+        channels: Names of its channels in order.
+        first_channel: Index of the first one within a frame.
+    """
 
     name: str
     parent: int
@@ -31,7 +39,17 @@ class Node:
 
 
 def read_bvh(path: Path) -> RawMotion:
-    """Joints of all frames (frame, joint, 3) in the file's unit, by forward kinematics. Raises InputError."""
+    """Reads a BVH file by forward kinematics.
+
+    Args:
+        path: The file.
+
+    Returns:
+        All joints (frame, joint, 3) under the file's names and in its unit.
+
+    Raises:
+        InputError: If it is not a BVH file with motion, or damaged.
+    """
     text = read_text(path, errors="replace").replace("{", "\n{\n").replace("}", "\n}\n")
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     if not lines or lines[0].upper() != "HIERARCHY":

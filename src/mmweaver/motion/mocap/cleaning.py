@@ -1,4 +1,4 @@
-"""Cleaning of recordings: gaps, frames of zeros, a T-pose at the start, joints in a wrong order."""
+"""Cleaning of recordings: gaps, frames of zeros, a T-pose at the start, joints in the wrong order."""
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -17,9 +17,18 @@ LIMBS = (("hip", "knee"), ("knee", "ankle"), ("shoulder", "elbow"), ("elbow", "w
 def fill_gaps(
     joints: Float[Array, "frame 22 3"], fps: float, source: str
 ) -> tuple[Float[Array, "frame 22 3"], tuple[str, ...]]:
-    """Fills gaps (nan, infinities, frames of zeros) of up to 0.25 s by cubic splines; returns joints and notes.
+    """Fills gaps (nan, infinities, frames of zeros) of up to 0.25 s by cubic splines.
 
-    Raises InputError for longer gaps, for gaps at either end, and where there is no motion at all.
+    Args:
+        joints: Joints (frame, 22, 3) in any unit.
+        fps: Frames per second.
+        source: Name of the file in messages.
+
+    Returns:
+        Joints without gaps, and a note if any were filled.
+
+    Raises:
+        InputError: If gaps are longer or at either end, or there is no motion at all.
     """
     joints = np.array(joints, float)
     joints[~np.isfinite(joints)] = np.nan
@@ -72,7 +81,16 @@ def _bridge(joints: Float[Array, "frame 22 3"], missing: Bool[Array, "frame 22"]
 def cut_t_pose(
     joints_m: Float[Array, "frame 22 3"], fps: float, source: str
 ) -> tuple[Float[Array, "left 22 3"], tuple[str, ...]]:
-    """Cuts off a T-pose of up to a second at the start if the motion jumps after it; else only notes it."""
+    """Cuts off a T-pose of up to a second at the start if the motion jumps after it; otherwise only notes it.
+
+    Args:
+        joints_m: Joints (frame, 22, 3) in metres, z up.
+        fps: Frames per second.
+        source: Name of the file in messages.
+
+    Returns:
+        The remaining joints, and a note if there is a T-pose.
+    """
     spread = is_t_pose(joints_m[: max(int(LONGEST_T_POSE_S * fps), 1) + 1])
     if not spread[0]:
         return joints_m, ()
@@ -87,7 +105,14 @@ def cut_t_pose(
 
 
 def is_t_pose(joints_m: Float[Array, "frame 22 3"]) -> Bool[Array, " frame"]:
-    """Whether each frame has both arms straight and level to the sides and both legs straight down; z up."""
+    """Whether each frame has both arms straight and level to the sides and both legs straight down.
+
+    Args:
+        joints_m: Joints (frame, 22, 3), z up.
+
+    Returns:
+        Mask (frame,).
+    """
     result = np.ones(len(joints_m), bool)
     for side in ("left", "right"):
         shoulder, elbow, wrist, hip, ankle = (
@@ -104,7 +129,15 @@ def is_t_pose(joints_m: Float[Array, "frame 22 3"]) -> Bool[Array, " frame"]:
 
 
 def check_bones(joints: Float[Array, "frame 22 3"], source: str) -> None:
-    """Raises InputError where limbs change length or differ between sides: the joints are in a wrong order."""
+    """Checks the order of the joints: limbs must keep their lengths and be equal on both sides.
+
+    Args:
+        joints: Joints (frame, 22, 3) in any unit.
+        source: Name of the file in messages.
+
+    Raises:
+        InputError: If a limb's length varies or differs between sides by more than 30 %.
+    """
     for one, other in LIMBS:
         middles = []
         for side in ("left", "right"):

@@ -1,4 +1,4 @@
-"""A recorded motion: as it was read (RawMotion), and in our joints, metres and axes (MotionClip)."""
+"""A recorded motion: as read (RawMotion), and in our joints, metres and axes (MotionClip)."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,48 +14,75 @@ from mmweaver.motion.animation.skeleton_proportions import ALLOWED_M
 Array = np.ndarray
 
 # Legs and trunk (hips to shoulders) as a share of the height, as in motion/animation/skeleton_proportions.py; the SMPL
-# mean body has 0.776. Spine and head joints would add precision, but every skeleton places them elsewhere.
+# mean body has 0.776. Spine and head joints would add precision, but skeletons differ in where they place them.
 BONES_OF_HEIGHT = 0.474 + 0.295
 LEGS = (("hip", "knee"), ("knee", "ankle"))
 
 
 @dataclass(frozen=True, kw_only=True)
 class RawMotion:
-    """Joints of a file under its own names, in its own unit and axes; None where the file does not state it."""
+    """Joints of a file in its own unit and axes; None where the file does not state them.
+
+    Attributes:
+        names: The file's own joint names.
+        positions: Joints (frame, joint, 3).
+        kind: Kind of file: BVH, SMPL, ...
+        fps: Frames per second.
+        unit_m: Metres per unit.
+        up: Upward axis: y, z, -y, -z, x or -x.
+        notes: Sentences on the assumptions made.
+    """
 
     names: tuple[str, ...]
     positions: Float[Array, "frame joint 3"]
-    kind: str  # of file: BVH, SMPL, ...
+    kind: str
     fps: float | None = None
-    unit_m: float | None = None  # metres in one unit
-    up: str | None = None  # y | z | -y | -z | x | -x
+    unit_m: float | None = None
+    up: str | None = None
     notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
 class MotionClip:
-    """A recorded motion of 22 joints: metres, z up, right-handed, evenly sampled; anywhere on its floor."""
+    """A recorded motion of 22 joints: metres, z up, right-handed, uniformly sampled; anywhere on its floor.
+
+    Attributes:
+        joints_m: Joints (frame, 22, 3) in metres.
+        fps: Frames per second.
+        label: Name in titles and meta.json.
+        notes: Sentences on the assumptions made.
+        has_jitter: Whether marker jitter is to be filtered out (see `clip_resampling`).
+        file: File it was read from.
+        first_frame: Index in the file.
+    """
 
     joints_m: Joints
     fps: float
-    label: str  # its name in titles and meta.json
-    notes: tuple[str, ...] = ()  # sentences on what was assumed
-    has_jitter: bool = True  # marker jitter is filtered out (see clip_resampling)
-    file: Path | None = None  # where it was read from
-    first_frame: int = 0  # index in the file
+    label: str
+    notes: tuple[str, ...] = ()
+    has_jitter: bool = True
+    file: Path | None = None
+    first_frame: int = 0
 
     @property
     def duration_s(self) -> float:
-        """Duration in seconds; every frame lasts 1/fps, the last one too."""
+        """Duration in seconds; every frame lasts 1/fps, including the last one."""
         return len(self.joints_m) / self.fps
 
     @property
     def height_m(self) -> float:
-        """The body's height in metres, estimated from the bones of legs and trunk."""
+        """Height of the body in metres, estimated from the bones of legs and trunk."""
         return body_height(self.joints_m)
 
     def after(self, start_s: float) -> "MotionClip":
-        """The clip from `start_s` on. Raises InputError where nothing is left."""
+        """The clip from a start time on.
+
+        Args:
+            start_s: Start in seconds.
+
+        Raises:
+            InputError: If fewer than two frames remain.
+        """
         first = round(start_s * self.fps)
         if not 0 <= first <= len(self.joints_m) - 2:
             raise InputError(
@@ -65,7 +92,17 @@ class MotionClip:
         return replace(self, joints_m=self.joints_m[first:], first_frame=self.first_frame + first) if first else self
 
     def scaled_to(self, height_m: float) -> "MotionClip":
-        """The motion of a body of another height; its paths scale with the legs."""
+        """Scales the body to another height; its paths scale with the legs.
+
+        Args:
+            height_m: Height in metres.
+
+        Returns:
+            The scaled clip, with a note.
+
+        Raises:
+            InputError: If the height is out of range.
+        """
         low, high = ALLOWED_M
         if not low <= height_m <= high:
             raise InputError(f"a body height of {height_m:g} m is outside {low:g} to {high:g} m; choose another")
@@ -75,9 +112,15 @@ class MotionClip:
 
 
 def body_height(joints: Joints) -> float:
-    """Height of the body in the unit of `joints` (frame, 22, 3), from the median lengths of its legs and trunk.
+    """Height of the body from the median lengths of its legs and trunk.
 
     Accurate to about 8 %: people, and the skeletons of recordings, differ in their proportions.
+
+    Args:
+        joints: Joints (frame, 22, 3) in any unit.
+
+    Returns:
+        Height in the same unit.
     """
 
     def length(one: str, other: str) -> float:

@@ -23,7 +23,7 @@ SOLE_UNDER_BALL = ANKLE_HEIGHT - 0.034  # of the height: from the floor to the f
 HEADINGS = 24  # tried, evenly spaced
 MAX_STARTS = 400
 TRACK_POINTS = 48
-LOW_PELVIS = 0.75  # of the height of the pelvis on straight legs: lower is sitting, crouching or lying
+LOW_PELVIS = 0.75  # of the pelvis height on straight legs: lower means sitting, crouching or lying
 TO_RADAR_RAD = -math.pi / 2
 
 
@@ -50,20 +50,20 @@ def place_clip(
     """Places the beginning of a clip in a scene.
 
     Args:
-        clip: the recorded motion.
-        scene: the room, in the radar's frame.
-        duration_s: how much of the clip, in seconds.
-        seed: chooses between equally good places.
-        range_window_m: nearest and farthest slant range that the radar keeps.
-        start_m: (x, y) where the pelvis starts; searched for by default, such that the whole track is free and in view.
-        heading_rad: heading there, from +x towards +y; searched for by default, towards the radar if possible.
-        as_recorded: the clip's positions are in the radar's frame already, and nothing is moved or checked.
+        clip: The recorded motion.
+        scene: The room, in the radar's frame.
+        duration_s: Duration to take from the clip, in seconds.
+        seed: Chooses between equally good places.
+        range_window_m: Nearest and farthest slant range in metres that the radar keeps.
+        start_m: Start (x, y) of the pelvis in metres; None searches one for which the whole track is free and in view.
+        heading_rad: Initial heading in radians, from +x towards +y; None searches one, towards the radar if possible.
+        as_recorded: Whether the clip's positions are in the radar's frame already; nothing is then moved or checked.
 
     Returns:
-        The motion at 120 Hz with notes on what was assumed.
+        The motion at 120 Hz with notes on the assumptions.
 
     Raises:
-        InputError: where there is no room, with the free area.
+        InputError: If there is no room, reporting the free area.
     """
     time_s, joints_m = resampled_clip(clip, duration_s)
     height_m = clip.height_m
@@ -83,16 +83,30 @@ def place_clip(
 
 
 def floor_under(joints_m: Float[Array, "frame 22 3"], height_m: float) -> float:
-    """Height in metres of the recording's floor: the lowest joints minus the height of a standing foot's joint; z up.
+    """Height of the recording's floor: the lowest joints minus the height of a standing foot's joint.
 
     Uses the second percentile of the lowest joint over time, so that a single bad frame does not count.
+
+    Args:
+        joints_m: Joints (frame, 22, 3) in metres, z up.
+        height_m: Height of the body in metres.
+
+    Returns:
+        z of the floor in metres.
     """
     lowest = joints_m[..., 2].min(axis=1)
     return float(np.percentile(lowest, 2)) - SOLE_UNDER_BALL * height_m
 
 
 def facing_of(joints_m: Float[Array, "22 3"]) -> float:
-    """Heading of a body from +x towards +y, by its hips and shoulders; z up."""
+    """Heading of a body by its hips and shoulders.
+
+    Args:
+        joints_m: Joints of one frame, (22, 3), z up.
+
+    Returns:
+        Radians from +x towards +y.
+    """
     across = joints_m[joint("left_hip")] - joints_m[joint("right_hip")]
     across = across + joints_m[joint("left_shoulder")] - joints_m[joint("right_shoulder")]
     return float(np.arctan2(-across[0], across[1]))
@@ -155,7 +169,7 @@ def _starts(floor: FloorMap, rng: np.random.Generator) -> Float[Array, "start 2"
 def _cost(
     tracks: Float[Array, "start point 2"], floor: FloorMap, reach_m: float, heading: float | None
 ) -> Float[Array, " start"]:
-    """Cost (start,) of positions, of limbs that reach beyond the clearance, and of facing away from the radar."""
+    """Cost (start,) of positions, of limbs that exceed the clearance, and of facing away from the radar."""
     tight = np.clip(reach_m - floor.clearance_at(tracks), 0.0, None).max(axis=1)
     cost = floor.cost_at(tracks).mean(axis=1) + 2.0 * tight
     if heading is not None:
@@ -183,7 +197,7 @@ def _moved(
 
 
 def _posture_note(clip: MotionClip, height_over_floor: Float[Array, "frame 22"]) -> list[str]:
-    """Notes a recorded body that sits or lies: no furniture of this room is under it."""
+    """Reports a recorded body that sits or lies: this room has no furniture under it."""
     names = ("hip", "knee", "ankle")
     positions = [clip.joints_m[:, joint(f"left_{name}")] for name in names]
     leg = float(np.median(sum(np.linalg.norm(a - b, axis=-1) for a, b in itertools.pairwise(positions))))

@@ -1,9 +1,8 @@
 """Resampling of a clip of any frame rate to 120 Hz, smooth enough for the radar's slow time.
 
-Between frames the joints follow cubic splines with continuous velocity and acceleration. Recordings of 50 frames a
-second or more contain marker jitter, tenths of a millimetre at frequencies at which no limb moves. The radar would see
-it (1 mm is half a cycle of its phase), so it is low-pass filtered at 12 Hz.
-
+Between frames the joints follow cubic splines with continuous velocity and acceleration. Recordings of 50 or more
+frames per second contain marker jitter, tenths of a millimetre at frequencies at which no limb moves. It would be
+visible to the radar (1 mm is half a cycle of its phase), so it is low-pass filtered at 12 Hz.
 Reference: Winter, Biomechanics and Motor Control of Human Movement, 2009, 3.4.4 (cut-off of recorded motion).
 """
 
@@ -20,7 +19,15 @@ JITTERS_FROM_FPS = 50.0
 
 
 def check_lasts(clip: MotionClip, duration_s: float) -> None:
-    """Raises InputError where a clip is shorter than `duration_s`."""
+    """Checks that a clip is long enough.
+
+    Args:
+        clip: The recorded motion.
+        duration_s: Required duration in seconds.
+
+    Raises:
+        InputError: If the clip is shorter.
+    """
     if clip.duration_s < duration_s - 1e-6:
         raise InputError(
             f"{clip.label} lasts {clip.duration_s:.3g} s, {duration_s:.3g} s are asked for; leave out --frames and"
@@ -32,14 +39,14 @@ def resampled_clip(clip: MotionClip, duration_s: float) -> tuple[PerFrame, Joint
     """Resamples a clip to 120 Hz, without jitter.
 
     Args:
-        clip: at any frame rate.
-        duration_s: how much of it, in seconds.
+        clip: The recorded motion at any frame rate.
+        duration_s: Duration to take from it, in seconds.
 
     Returns:
         Times (n,) from just before 0 to just after `duration_s`, and joints (n, 22, 3) in metres.
 
     Raises:
-        InputError: where the clip is shorter.
+        InputError: If the clip is shorter.
     """
     from scipy.interpolate import CubicSpline
 
@@ -53,7 +60,14 @@ def resampled_clip(clip: MotionClip, duration_s: float) -> tuple[PerFrame, Joint
 
 
 def low_passed(clip: MotionClip) -> Joints:
-    """Joints (frame, 22, 3) without jitter above 12 Hz: a Butterworth filter, run both ways for zero phase."""
+    """Removes jitter above 12 Hz by a Butterworth filter, run both ways for zero phase.
+
+    Args:
+        clip: The recorded motion; without jitter, or below 50 frames per second, it is returned unchanged.
+
+    Returns:
+        Joints (frame, 22, 3) in metres.
+    """
     from scipy.signal import butter, sosfiltfilt
 
     if not clip.has_jitter or clip.fps < JITTERS_FROM_FPS:

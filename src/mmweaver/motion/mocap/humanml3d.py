@@ -27,7 +27,14 @@ ROTATIONS, VELOCITIES, CONTACTS = slice(67, 193), slice(193, 259), slice(259, 26
 
 
 def joints_from_features(features: Float[Array, "frame 263"]) -> Float[Array, "frame 22 3"]:
-    """Joints in metres, y up, of features; the root starts at (0, y, 0) and faces +z."""
+    """Recovers joints from HumanML3D features; the root starts at (0, y, 0) and faces +z.
+
+    Args:
+        features: Features (frame, 263), not normalised.
+
+    Returns:
+        Joints (frame, 22, 3) in metres, y up.
+    """
     features = np.asarray(features, float)
     half = np.concatenate([[0.0], np.cumsum(features[:-1, 0])])
     shift = np.zeros((len(features), 3))
@@ -44,7 +51,15 @@ def joints_from_features(features: Float[Array, "frame 263"]) -> Float[Array, "f
 
 
 def rotated_about_y(vectors: Float[Array, "*shape 3"], half_rad: Float[Array, "..."]) -> Float[Array, "*shape 3"]:
-    """Vectors rotated about y by twice `half_rad`."""
+    """Rotates vectors about y.
+
+    Args:
+        vectors: Vectors (..., 3).
+        half_rad: Half the angle in radians, broadcast against the vectors.
+
+    Returns:
+        Rotated vectors (..., 3).
+    """
     cos, sin = np.cos(2 * half_rad), np.sin(2 * half_rad)
     x, y, z = (vectors[..., axis] for axis in range(3))
     return np.stack([cos * x + sin * z, y, cos * z - sin * x], axis=-1)

@@ -19,11 +19,21 @@ JOINT_KEYS = ("joints_m", "joints", "positions", "keypoints3d", "pos")
 NAME_KEYS = ("joint_names", "names")
 CMU_FPS = 120.0
 CMU_NAMES = {int(index): name for index, name in SKELETONS["cmu"].items()}
-NORMALISED_BELOW_M = 0.25  # mean height of the root below which features must be normalised ones
+NORMALISED_BELOW_M = 0.25  # features with a lower mean root height must be normalised
 
 
 def read_npy(path: Path) -> RawMotion:
-    """Joints (frame, 22, 3) or (frame, 66), or HumanML3D features (frame, 263). Raises InputError for other shapes."""
+    """Reads joints or HumanML3D features.
+
+    Args:
+        path: .npy with joints (frame, 22, 3) or (frame, 66), or features (frame, 263).
+
+    Returns:
+        The motion; features are in metres, y up, at 20 frames per second.
+
+    Raises:
+        InputError: If the array has another shape or type.
+    """
     values = safe_arrays.read_npy(path)
     if values.dtype.kind not in "fiu":
         raise InputError(f"{path} holds values of type {values.dtype}; a motion has real numbers, saved alone")
@@ -36,7 +46,19 @@ def read_npy(path: Path) -> RawMotion:
 
 
 def read_npz(path: Path, clip: str | None = None, body_model: Path | None = None) -> RawMotion:
-    """SMPL poses, CMU clips (`clip` names one), or joints under a known key. Raises InputError for anything else."""
+    """Reads SMPL poses, clips of the CMU collection, or joints under a known key.
+
+    Args:
+        path: The .npz file.
+        clip: Name of a clip in a file of several.
+        body_model: The user's own SMPL model; None takes the mean skeleton.
+
+    Returns:
+        The motion in the file's own unit and axes.
+
+    Raises:
+        InputError: If the file holds anything else.
+    """
     arrays = dict(safe_arrays.read_npz(path, skip_unreadable=True))
     if {"names", "lengths", "pos", "parents"} <= set(arrays):
         return _read_cmu(arrays, path, clip)
@@ -72,7 +94,14 @@ def read_npz(path: Path, clip: str | None = None, body_model: Path | None = None
 
 
 def clips_of(path: Path) -> tuple[str, ...]:
-    """Names of the motions of a file, where it holds several; else ()."""
+    """Names of the motions of a file.
+
+    Args:
+        path: Motion file.
+
+    Returns:
+        Names; () if the file holds a single motion.
+    """
     arrays = safe_arrays.read_npz(path, only=("names", "lengths")) if path.suffix.lower() == ".npz" else {}
     return tuple(map(str, arrays["names"])) if {"names", "lengths"} <= set(arrays) else ()
 

@@ -1,8 +1,8 @@
-"""Mapping of joint names of other skeletons to our 22 joints.
+"""Maps joint names of other skeletons to our 22 joints.
 
 Names are split into a side and a part ("LeftForeArm", "lowerarm_l", "Bip01 L Forearm" and "mixamorig:LeftForeArm" are
-all left + forearm). Two words mean different joints in different files: a "shoulder" is the collar if the file also has
-an arm, a "foot" is the ankle unless the file has an ankle.
+all left + forearm). Two words are ambiguous between files: a "shoulder" is the collar if the file also has an arm, a
+"foot" is the ankle unless the file has an ankle.
 """
 
 import re
@@ -31,6 +31,9 @@ FINGERS = re.compile(r"thumb|index|middle|ring|pinky|finger|twist|ik|pole|metaca
 def parts_of(name: str) -> tuple[str, str, int]:
     """Side ("left", "right" or ""), part and number of a joint's name.
 
+    Args:
+        name: Name in any known convention.
+
     >>> parts_of("mixamorig:LeftForeArm"), parts_of("spine_02"), parts_of("Bip01 R Thigh")
     (('left', 'forearm', 0), ('', 'spine', 2), ('right', 'thigh', 0))
     """
@@ -48,9 +51,17 @@ def parts_of(name: str) -> tuple[str, str, int]:
 
 
 def to_22(raw: RawMotion, source: str) -> Float[Array, "frame 22 3"]:
-    """The 22 joints (frame, 22, 3) of a motion under other names; missing spine, neck, collars, feet are interpolated.
+    """Maps the joints of a motion to our 22; missing spine, neck, collars and feet are interpolated.
 
-    Raises InputError, naming them, where other joints are missing.
+    Args:
+        raw: Motion under any joint names.
+        source: Name of the file in messages.
+
+    Returns:
+        Joints (frame, 22, 3) in the file's unit and axes.
+
+    Raises:
+        InputError: If other joints are missing, naming them.
     """
     lowered = [name.lower() for name in raw.names]
     if set(JOINT_NAMES) <= set(lowered):
@@ -118,7 +129,7 @@ def _fill_spine(joints: Float[Array, "frame 22 3"], chain: list[Float[Array, "fr
 
 
 def _fill_ends(joints: Float[Array, "frame 22 3"], known: dict[str, Array]) -> None:
-    """Puts collars halfway to the shoulders, and balls of the feet ahead of the ankles, where the file has none."""
+    """Puts collars halfway to the shoulders, and balls of the feet ahead of the ankles, if the file has none."""
     across = known["left_hip"] - known["right_hip"]
     for side in ("left", "right"):
         if f"{side}_collar" not in known:

@@ -1,6 +1,6 @@
-"""From a motion file of any known kind to a MotionClip. Read this file first.
+"""From a motion file of any known kind to a MotionClip. Start with this file.
 
-BVH, .npy, .npz --bvh, arrays, smpl--> RawMotion (own names, unit, axes)
+BVH, .npy, .npz --bvh, joint_arrays, smpl--> RawMotion (own names, unit, axes)
     --joint_names--> 22 joints --cleaning--> no gaps --axes--> metres, z up --cleaning--> MotionClip
 """
 
@@ -38,18 +38,18 @@ def read_motion(
     """Reads a recorded motion.
 
     Args:
-        path: a .bvh, .npy or .npz file.
-        fps: frames per second; needed where the file states none, and overrides what it states.
-        unit: m, cm, mm, inch, cmu, or the metres in one unit; estimated from the body by default.
-        up: the upward axis, y, z, ...; estimated from the body by default.
-        clip: name of one motion in a file of several.
-        body_model: the user's own SMPL model (.npz); the mean skeleton by default.
+        path: A .bvh, .npy or .npz file.
+        fps: Frames per second; required if the file states none, and overrides its value.
+        unit: m, cm, mm, inch, cmu, or the metres per unit; None estimates it from the body.
+        up: Upward axis: y, z, ...; None estimates it from the body.
+        clip: Name of one motion in a file of several.
+        body_model: The user's own SMPL model (.npz); None takes the mean skeleton.
 
     Returns:
-        22 joints in metres, z up; what was estimated is in its notes.
+        22 joints in metres, z up; its notes report what was estimated.
 
     Raises:
-        InputError: for whatever is no human motion.
+        InputError: If the file does not hold a human motion.
     """
     path = Path(path)
     if not path.is_file():
@@ -79,7 +79,21 @@ def to_clip(
     unit: str | float | None = None,
     up: str | None = None,
 ) -> MotionClip:
-    """Converts a RawMotion to our joints, metres and axes, without gaps; see `read_motion`."""
+    """Converts a motion to our joints, metres and axes, without gaps.
+
+    Args:
+        raw: Motion under any joint names.
+        label: Name of the motion in messages.
+        fps: As in `read_motion`.
+        unit: As in `read_motion`.
+        up: As in `read_motion`.
+
+    Returns:
+        The clip with notes on what was estimated.
+
+    Raises:
+        InputError: As in `read_motion`.
+    """
     ArrayChecks(label).numbers("the motion", np.asarray(raw.positions), low=-MAX_UNITS, high=MAX_UNITS, nan=True)
     if not 2 <= len(raw.positions) <= MAX_FRAMES:
         raise InputError(f"{label} has {len(raw.positions)} frames; a motion has 2 to {MAX_FRAMES}")

@@ -26,12 +26,24 @@ RATES = ("mocap_framerate", "mocap_frame_rate", "fps", "frame_rate", "framerate"
 
 
 def is_smpl(arrays: dict[str, Array]) -> bool:
-    """Whether an .npz holds poses of an SMPL body."""
+    """Whether the arrays of an .npz are poses of an SMPL body."""
     return bool(set(_POSES) & set(arrays)) and bool(set(TRANSLATIONS) & set(arrays))
 
 
 def read_smpl(arrays: dict[str, Array], path: Path, body_model: Path | None = None) -> RawMotion:
-    """Joints (frame, 22, 3) in metres of an AMASS or SMPL .npz. Raises InputError for shapes that are no such poses."""
+    """Joints of an AMASS or SMPL .npz by forward kinematics.
+
+    Args:
+        arrays: Arrays of the file by name.
+        path: The file, for error messages.
+        body_model: The user's own SMPL model; None takes the mean skeleton.
+
+    Returns:
+        22 joints (frame, 22, 3) in metres.
+
+    Raises:
+        InputError: If the shapes are not those of such poses.
+    """
     poses = _poses(arrays, path)
     trans = next(real_numbers(path, name, arrays[name]) for name in TRANSLATIONS if name in arrays)
     if trans.shape != (len(poses), 3):
@@ -48,7 +60,15 @@ def read_smpl(arrays: dict[str, Array], path: Path, body_model: Path | None = No
 
 
 def rate_of(arrays: dict[str, Array], path: Path) -> float | None:
-    """The frame rate that an .npz states, if it does."""
+    """Frame rate stated by an .npz.
+
+    Args:
+        arrays: Arrays of the file by name.
+        path: The file, for error messages.
+
+    Returns:
+        Hz; None if there is none.
+    """
     found = [name for name in RATES if name in arrays and arrays[name].size == 1 and arrays[name].dtype.kind in "fiuc"]
     if not found:
         return None
@@ -59,7 +79,16 @@ def rate_of(arrays: dict[str, Array], path: Path) -> float | None:
 def forward(
     rotations: Float[Array, "frame 22 3"], trans: Float[Array, "frame 3"], offsets_m: Float[Array, "22 3"]
 ) -> Float[Array, "frame 22 3"]:
-    """Forward kinematics of axis-angle rotations in radians, each in its parent's frame; metres."""
+    """Forward kinematics of the SMPL skeleton.
+
+    Args:
+        rotations: Axis-angle rotations in radians, each in its parent's frame, (frame, 22, 3).
+        trans: Translation of the root in metres, (frame, 3).
+        offsets_m: Offset of each joint from its parent in metres, (22, 3).
+
+    Returns:
+        Joints (frame, 22, 3) in metres; nan in frames with a missing rotation.
+    """
     from scipy.spatial.transform import Rotation
 
     missing = np.asarray(~np.isfinite(rotations).all(axis=(1, 2)))

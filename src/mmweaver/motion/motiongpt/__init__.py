@@ -1,4 +1,4 @@
-"""MotionGPT: text to motion by a language model whose vocabulary includes motion tokens. Start at `motiongpt.py`.
+"""MotionGPT: text to motion by a language model whose vocabulary includes motion tokens. Start with `motiongpt.py`.
 
-Needs the extra `pretrained` (transformers).
+Requires the extra `pretrained` (transformers).
 """

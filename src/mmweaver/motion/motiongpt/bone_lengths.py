@@ -1,6 +1,6 @@
 """Constant bone lengths: the decoder predicts joints independently, so that bones stretch by per cents between frames.
 
-A radar would see the stretching as motion.
+A radar would observe the stretching as motion.
 """
 
 import numpy as np
@@ -10,9 +10,15 @@ from mmweaver.core.skeleton import PARENTS
 
 
 def fix_bone_lengths(joints: Float[np.ndarray, "frame 22 3"]) -> Float[np.ndarray, "frame 22 3"]:
-    """Joints (frame, 22, 3) with the same bone directions, each bone of its median length.
+    """Rescales each bone to its median length, with unchanged directions.
 
     The pelvis keeps its position on the floor, the lower foot its height.
+
+    Args:
+        joints: Joints in metres, z up, (frame, 22, 3).
+
+    Returns:
+        Joints (frame, 22, 3) with constant bone lengths.
     """
     steady = joints.copy()
     for child, parent in enumerate(PARENTS):

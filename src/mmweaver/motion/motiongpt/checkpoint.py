@@ -22,12 +22,22 @@ State = dict[str, Tensor]
 
 
 def read_checkpoint(path: Path) -> tuple[State, dict[str, str]]:
-    """All tensors of a checkpoint, and the metadata of a safetensors file. Raises InputError for anything else."""
+    """Reads all tensors of a checkpoint.
+
+    Args:
+        path: safetensors file, or torch archive of tensors.
+
+    Returns:
+        Tensors by name, and the metadata of a safetensors file.
+
+    Raises:
+        InputError: If the file is missing or holds anything else.
+    """
     if not path.is_file():
         raise InputError(f"there is no checkpoint {path}; give the file of MotionGPT, or a folder that holds it")
     if path.suffix == ".safetensors":
         return safe_tensors.read_tensors(path)
-    # The published file was written by torch's own saving, of which tensors and plain values alone are read.
+    # The published file is a torch archive, of which only tensors and plain values are read.
     content = safe_tensors.read_checkpoint(path, what=NO_CHECKPOINT)
     state = content.get("state_dict", content) if isinstance(content, dict) else content
     if not isinstance(state, dict) or not all(isinstance(value, Tensor) for value in state.values()):
@@ -37,7 +47,18 @@ def read_checkpoint(path: Path) -> tuple[State, dict[str, str]]:
 
 
 def parts_of(state: State, path: Path) -> tuple[State, State]:
-    """The tensors of the tokenizer and of the language model, without those of metrics and losses."""
+    """Splits the tensors into tokenizer and language model, without those of metrics and losses.
+
+    Args:
+        state: Tensors of the checkpoint by name.
+        path: Checkpoint, for error messages.
+
+    Returns:
+        Tensors of the tokenizer and of the language model, without their prefixes.
+
+    Raises:
+        InputError: If either is missing.
+    """
     vae = {name.removeprefix(VAE): value for name, value in state.items() if name.startswith(VAE)}
     language = {name.removeprefix(LANGUAGE): value for name, value in state.items() if name.startswith(LANGUAGE)}
     if not vae or not language:
@@ -48,7 +69,15 @@ def parts_of(state: State, path: Path) -> tuple[State, State]:
 
 
 def tokenizer_config(vae: State, path: Path) -> TokenizerConfig:
-    """Sizes of the tokenizer, inferred from its tensors."""
+    """Infers the sizes of the tokenizer from its tensors.
+
+    Args:
+        vae: Tensors of the tokenizer.
+        path: Checkpoint, for error messages.
+
+    Raises:
+        InputError: If tensors are missing or have unexpected shapes.
+    """
     first, book = _need(vae, path, VAE, "encoder.model.0.weight", "quantizer.codebook")
     blocks = {int(name.split(".")[2]) for name in vae if name.startswith("encoder.model.") and ".model." in name[14:]}
     depth = {int(name.split(".")[5]) for name in vae if name.startswith("encoder.model.2.1.model.")}
@@ -72,7 +101,18 @@ def _need(state: State, path: Path, prefix: str, *names: str) -> list[Tensor]:
 
 
 def t5_sizes(language: State, path: Path) -> dict[str, int | str | bool]:
-    """Sizes of the T5, inferred from its tensors, under the names of `transformers.T5Config`."""
+    """Infers the sizes of the T5 from its tensors.
+
+    Args:
+        language: Tensors of the language model.
+        path: Checkpoint, for error messages.
+
+    Returns:
+        Arguments of `transformers.T5Config`.
+
+    Raises:
+        InputError: If tensors are missing or have unexpected shapes.
+    """
     block = "encoder.block.0.layer.0.SelfAttention."
     shared, bias, query = _need(
         language, path, LANGUAGE, "shared.weight", f"{block}relative_attention_bias.weight", f"{block}q.weight"
@@ -101,7 +141,17 @@ def t5_sizes(language: State, path: Path) -> dict[str, int | str | bool]:
 
 
 def check_state(given: State, wanted: State, prefix: str, path: Path) -> None:
-    """Raises InputError where tensors are missing or have another shape, naming the first few."""
+    """Checks that tensors are complete and have the expected shapes.
+
+    Args:
+        given: Tensors of the checkpoint.
+        wanted: Tensors of the model.
+        prefix: Prefix of the names in error messages.
+        path: Checkpoint, for error messages.
+
+    Raises:
+        InputError: If tensors are missing or have other shapes, naming the first few.
+    """
     missing = [prefix + name for name in wanted if name not in given]
     if missing:
         raise InputError(f"{path} lacks {_few(missing)}; it is incomplete or of another model")

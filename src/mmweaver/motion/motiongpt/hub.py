@@ -1,4 +1,4 @@
-"""A checkpoint by the name of its repository on the Hugging Face Hub."""
+"""Finds a checkpoint by the name of its repository on the Hugging Face Hub."""
 
 import re
 from pathlib import Path
@@ -11,7 +11,10 @@ CHECKPOINT, SMALL = "motiongpt_s3_h3d.tar", "motiongpt_small.safetensors"
 
 
 def looks_like_hub(name: str) -> bool:
-    """Whether a name has the form owner/name and is no existing path.
+    """Whether a name has the form owner/name and is not an existing path.
+
+    Args:
+        name: Name or path given by the user.
 
     >>> looks_like_hub("OpenMotionLab/MotionGPT-base"), looks_like_hub("weights/motiongpt.tar")
     (True, False)
@@ -21,9 +24,16 @@ def looks_like_hub(name: str) -> bool:
 
 
 def published_checkpoint(name: str) -> Path:
-    """The published or the small checkpoint of a repository on the Hub, downloaded once and kept in its cache.
+    """Downloads the published or the small checkpoint of a repository once, into the Hub's cache.
 
-    Raises InputError where it cannot be had.
+    Args:
+        name: Repository as owner/name.
+
+    Returns:
+        Path in the cache.
+
+    Raises:
+        InputError: If it cannot be fetched.
     """
     from huggingface_hub import hf_hub_download
     from huggingface_hub.errors import EntryNotFoundError

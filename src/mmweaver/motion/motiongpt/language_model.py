@@ -34,8 +34,14 @@ LONGEST_TEXT_TOKENS = 256
 def build_t5(sizes: dict[str, Any]) -> "T5ForConditionalGeneration":
     """A T5 of the given sizes with random weights.
 
-    `tie_word_embeddings` False gives the output words a matrix of their own, as flan-t5 has it; transformers 5 would
-    share one with the input words whatever the configuration says.
+    `tie_word_embeddings` False gives the output words a matrix of their own, as in flan-t5; transformers 5 would share
+    one with the input words whatever the configuration.
+
+    Args:
+        sizes: Result of `checkpoint.t5_sizes`.
+
+    Raises:
+        InputError: If transformers is not installed.
     """
     need("pretrained", "the motion model", "transformers")
     from transformers import T5Config, T5ForConditionalGeneration
@@ -51,7 +57,18 @@ def build_t5(sizes: dict[str, Any]) -> "T5ForConditionalGeneration":
 
 
 def add_motion_tokens(words: "PreTrainedTokenizerBase", codes: int) -> int:
-    """Appends the motion tokens to the vocabulary; returns the id of the first."""
+    """Appends the motion tokens to the vocabulary.
+
+    Args:
+        words: Text tokenizer, modified in place.
+        codes: Number of motion codes; three special tokens follow them.
+
+    Returns:
+        Id of the first motion token.
+
+    Raises:
+        InputError: If the tokenizer already has motion tokens in another order.
+    """
     names = [f"<motion_id_{k}>" for k in range(codes + 3)]
     words.add_tokens(names)
     first, last = words.convert_tokens_to_ids(names[0]), words.convert_tokens_to_ids(names[-1])
@@ -69,14 +86,13 @@ def sample_codes(
     tokens: int | None,
     most_tokens: int,
     seed: int,
-    temperature: float = 1.0,
-    top_k: int = 50,
+    **sampling: Any,
 ) -> list[int]:
     """Samples motion codes for a text.
 
     With `tokens`, exactly that many: all other tokens, and an early end, are masked. Without, as many as the model
-    generates, up to `most_tokens`, as in the published demo; other tokens are dropped. The same seed gives the same
-    codes.
+    generates, up to `most_tokens`, as in the published demo; other tokens are dropped. `sampling`: `temperature`
+    (default 1) and `top_k` (default 50). The same seed gives the same codes.
     """
     from transformers import LogitsProcessorList
 
@@ -92,8 +108,7 @@ def sample_codes(
             max_new_tokens=(tokens if tokens is not None else most_tokens) + 3,
             num_beams=1,
             do_sample=True,
-            temperature=temperature,
-            top_k=top_k,
+            **({"temperature": 1.0, "top_k": 50} | sampling),
             logits_processor=rules,
         )
     ids = [int(k) - first_motion_id for k in generated[0]]

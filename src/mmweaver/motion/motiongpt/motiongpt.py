@@ -1,4 +1,4 @@
-"""From a MotionGPT checkpoint and a sentence to a MotionClip. Read this file first.
+"""From a MotionGPT checkpoint and a sentence to a MotionClip. Start with this file.
 
 text --words--> ids --T5--> motion codes --decoder--> features --mean, std--> joints
 """
@@ -42,13 +42,23 @@ if TYPE_CHECKING:
 Array = np.ndarray
 SMALL_NAME = "small"
 ENDINGS = (".safetensors", ".tar", ".ckpt", ".pt", ".pth", ".bin")
-MIN_FRAMES, MAX_FRAMES = 40, 196  # what MotionGPT was trained on
+MIN_FRAMES, MAX_FRAMES = 40, 196  # range of MotionGPT's training data
 RAW_CONTACT_STD = (0.2, 0.6)  # of HumanML3D's own Std.npy; MotionGPT's differs by a factor of about 25
 
 
 @dataclass(frozen=True, kw_only=True)
 class MotionGPT:
-    """A motion tokenizer, a language model with its text tokenizer, and the mean and standard deviation of features."""
+    """A MotionGPT model for inference.
+
+    Attributes:
+        tokenizer: Motion tokenizer.
+        language: Language model.
+        words: Its text tokenizer, with the motion tokens.
+        mean: Mean of the HumanML3D features, (263,).
+        std: Standard deviation of the features, (263,).
+        first_motion_id: Id of the first motion token.
+        name: Name in notes and error messages.
+    """
 
     tokenizer: MotionTokenizer
     language: "T5ForConditionalGeneration"
@@ -67,11 +77,20 @@ class MotionGPT:
         std: str | Path | None = None,
         words: str | Path | None = None,
     ) -> "MotionGPT":
-        """From a checkpoint file, a folder that holds one, a name on the Hub (owner/name), or "small", that of a clone.
+        """Loads a checkpoint.
 
         The published checkpoint needs MotionGPT's own `mean.npy` and `std.npy` (its assets/meta), not HumanML3D's, and
-        the text tokenizer of flan-t5-base; all are looked for next to it. A file of this project
-        (.safetensors) holds everything. Raises InputError for whatever is no such model.
+        the text tokenizer of flan-t5-base. A file of this project (.safetensors) holds everything.
+
+        Args:
+            path: Checkpoint file, folder that holds one, name on the Hub (owner/name), or "small" for the one in a
+                clone.
+            mean: Mean of the features, .npy; None looks next to the checkpoint.
+            std: Standard deviation of the features, .npy; None looks next to the checkpoint.
+            words: Folder of the text tokenizer; None looks next to the checkpoint, then on the Hub.
+
+        Raises:
+            InputError: If it is not such a model.
         """
         need("pretrained", "the motion model", "transformers")
         place = _place_of(path)
@@ -109,10 +128,20 @@ class MotionGPT:
     def generate(
         self, text: str, *, seconds: float | None = None, seed: int = 0, temperature: float = 1.0, top_k: int = 50
     ) -> MotionClip:
-        """The motion of a sentence at 20 frames a second.
+        """Generates the motion of a sentence at 20 frames per second.
 
-        With `seconds` (up to 9.8, as trained) exactly so many frames; else as many as the model says. The same seed
-        gives the same motion. Raises InputError for an empty text or a length that the model was not trained on.
+        Args:
+            text: The sentence.
+            seconds: Exact duration, up to 9.8 s as trained; None lets the model choose.
+            seed: Seed; the same seed gives the same motion.
+            temperature: Sampling temperature.
+            top_k: Number of most likely tokens to sample from.
+
+        Returns:
+            22 joints in metres, z up.
+
+        Raises:
+            InputError: If the text is empty or too long, or the model was not trained on the duration.
         """
         if not text.strip():
             raise InputError("the text is empty; say what the person does")
@@ -148,13 +177,27 @@ class MotionGPT:
         return MotionClip(joints_m=fix_bone_lengths(z_up), fps=FPS, label=f"{self.name}: {text}", notes=tuple(notes))
 
     def features_of(self, codes: list[int]) -> Float[Array, "frame 263"]:
-        """HumanML3D features (frame, 263) of motion codes, four frames each."""
+        """Decodes motion codes, four frames each.
+
+        Args:
+            codes: Motion codes.
+
+        Returns:
+            HumanML3D features (frame, 263).
+        """
         with torch.inference_mode():
             made = self.tokenizer.decode(torch.tensor([codes]))[0].double().numpy()
         return made * self.std + self.mean
 
     def codes_of(self, features: Float[Array, "frame 263"]) -> list[int]:
-        """Motion codes of HumanML3D features."""
+        """Encodes features as motion codes.
+
+        Args:
+            features: HumanML3D features (frame, 263), not normalised.
+
+        Returns:
+            Motion codes, one per four frames.
+        """
         normal = torch.from_numpy(((features - self.mean) / self.std)[None]).float()
         with torch.inference_mode():
             return self.tokenizer.encode(normal)[0].tolist()
@@ -169,7 +212,15 @@ class MotionGPT:
 
 
 def check_std(std: Float[Array, " feature"], place: Path) -> None:
-    """Raises InputError for HumanML3D's own Std.npy, with which MotionGPT's tokenizer gives broken motion."""
+    """Rejects HumanML3D's own Std.npy, with which MotionGPT's tokenizer gives broken motion.
+
+    Args:
+        std: Standard deviation of the features, (263,).
+        place: Checkpoint, for the error message.
+
+    Raises:
+        InputError: If the foot contacts have HumanML3D's standard deviation.
+    """
     low, high = RAW_CONTACT_STD
     if low < float(np.mean(std[CONTACTS])) < high:
         raise InputError(
@@ -180,7 +231,11 @@ def check_std(std: Float[Array, " feature"], place: Path) -> None:
 
 
 def small_file() -> Path:
-    """The small model of a clone of the repository. Raises InputError where mmweaver was installed without one."""
+    """Path of the small model in a clone of the repository.
+
+    Raises:
+        InputError: If mmweaver was installed without it.
+    """
     otherwise = (
         f"give the path of {SMALL} from the folder weights/ of a clone, or a name on the Hub (owner/name) that holds it"
     )

@@ -13,8 +13,14 @@ WORD_FILES = ("tokenizer.json", "spiece.model")
 
 
 def load_words(folder: Path | None) -> "PreTrainedTokenizerBase":
-    """The text tokenizer of flan-t5-base: from a folder with tokenizer.json or spiece.model, else from the Hub or its
-    cache. Raises InputError where it is in neither."""
+    """Loads the text tokenizer of flan-t5-base.
+
+    Args:
+        folder: Folder with tokenizer.json or spiece.model; None takes the Hub or its cache.
+
+    Raises:
+        InputError: If it cannot be read.
+    """
     from transformers import AutoTokenizer
 
     try:
@@ -29,7 +35,11 @@ def load_words(folder: Path | None) -> "PreTrainedTokenizerBase":
 
 
 def wrapped(description: str) -> "PreTrainedTokenizerBase":
-    """A tokenizer from its JSON; texts end with </s>, as for T5."""
+    """A tokenizer from its JSON; texts end with </s>, as for T5.
+
+    Args:
+        description: Content of tokenizer.json.
+    """
     from tokenizers import Tokenizer, processors
     from transformers import PreTrainedTokenizerFast
 
@@ -39,7 +49,12 @@ def wrapped(description: str) -> "PreTrainedTokenizerBase":
 
 
 def unknown_words(words: "PreTrainedTokenizerBase", text: str) -> tuple[str, ...]:
-    """Words of a text that are not in the vocabulary; a subword tokenizer has none."""
+    """Words of a text that are not in the vocabulary; a subword tokenizer has none.
+
+    Args:
+        words: Text tokenizer.
+        text: The text.
+    """
     if words.unk_token_id is None:
         return ()
     found = [word for word in text.split() if words.unk_token_id in words(word).input_ids]

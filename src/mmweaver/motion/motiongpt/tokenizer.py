@@ -21,7 +21,17 @@ from torch.nn import functional
 
 @dataclass(frozen=True, kw_only=True)
 class TokenizerConfig:
-    """Sizes of the tokenizer; the defaults are the published ones."""
+    """Sizes of the tokenizer; the defaults are the published ones.
+
+    Attributes:
+        features: Features per frame.
+        codes: Number of codes.
+        code_width: Dimension of a code vector.
+        width: Channels of the convolutions.
+        halvings: Number of downsamplings by two.
+        depth: Residual convolutions per level.
+        dilation_growth: Ratio of successive dilations.
+    """
 
     features: int = 263
     codes: int = 512
@@ -84,7 +94,7 @@ class Codebook(nn.Module):
         self.register_buffer("codebook", torch.zeros(config.codes, config.code_width))
 
     def nearest(self, x: Float[Tensor, "n width"]) -> Int[Tensor, " n"]:
-        """Index of the nearest code."""
+        """Index of the nearest code of each vector (n, width), (n,)."""
         distance = x.square().sum(1, keepdim=True) - 2 * x @ self.codebook.T + self.codebook.square().sum(1)
         return distance.argmin(dim=1)
 
@@ -112,11 +122,25 @@ class MotionTokenizer(nn.Module):
         self.quantizer = Codebook(config)
 
     def encode(self, features: Float[Tensor, "batch frame feature"]) -> Int[Tensor, "batch token"]:
-        """Codes of normalised features; frames that do not fill a token are dropped."""
+        """Encodes normalised features; frames that do not fill a token are dropped.
+
+        Args:
+            features: Normalised features, (batch, frame, 263).
+
+        Returns:
+            Codes (batch, token).
+        """
         latent = self.encoder(features.transpose(1, 2)).transpose(1, 2)
         return self.quantizer.nearest(latent.reshape(-1, latent.shape[-1])).reshape(latent.shape[:2])
 
     def decode(self, codes: Int[Tensor, "batch token"]) -> Float[Tensor, "batch frame feature"]:
-        """Normalised features of codes."""
+        """Decodes codes.
+
+        Args:
+            codes: Motion codes, (batch, token).
+
+        Returns:
+            Normalised features (batch, frame, 263), four frames per token.
+        """
         latent = self.quantizer.codebook[codes]
         return self.decoder(latent.transpose(1, 2)).transpose(1, 2)

@@ -1,1 +1,1 @@
-"""A plan becomes a path through the room, clear of furniture and of other people."""
+"""Plans a path through the room, clear of furniture and of other people."""

@@ -1,6 +1,6 @@
-"""Ways to walk up to a seat: straight, along the front of it past a table, or from the side onto a chair at one.
+"""Paths to a seat: straight, along the front of it past a table, or from the side onto a chair at one.
 
-They depend on the room alone, so they are found once for a floor map and kept.
+They depend on the room alone, so they are computed once per floor map and cached.
 """
 
 from collections.abc import Iterator, Sequence
@@ -39,44 +39,55 @@ from mmweaver.motion.planning.trajectory import (
 )
 
 Array = np.ndarray
-CLOSEST_FEET_M = 0.05  # clearance in front of a seat for somebody who sits down or gets up
+CLOSEST_FEET_M = 0.05  # clearance in front of a seat to sit down or get up
 _NARROW_M = 0.05  # clearance between couch and table for legs that pass there
-_TURNS_RAD = (0.0, 0.3, 0.6, 0.9, 1.2, 1.4)  # how far from ahead somebody may sit
+_TURNS_RAD = (0.0, 0.3, 0.6, 0.9, 1.2, 1.4)  # angles from straight ahead at which one may sit
 _TURN_COST, _SHIFT_COST, _NARROW_COST = 0.4, 0.3, 0.5
-_LITTLE_M = 0.05  # how far people shift on a seat, to a side, ahead or back
-_SEAT_WIDTH_M, _SHIFT_M = 0.6, 0.3  # of one sitter, and between places on a couch that are tried
+_LITTLE_M = 0.05  # shift on a seat, to a side, ahead or back
+_SEAT_WIDTH_M, _SHIFT_M = 0.6, 0.3  # width of one sitter, and spacing of the places tried on a couch
 _LONGEST_NARROW_M, _GATE_STEP_M = 1.2, 0.1
-_OFF_FRONT_RAD = (0.0, 0.5)  # how far from along the seat's front the narrow way may lead
+_OFF_FRONT_RAD = (0.0, 0.5)  # angle between a narrow path and the seat's front
 _WAYS_A_SEAT, _MAX_STARTS = 4, 200
-_SPEEDS_MPS = {"jog": (1.2, 3.6)}  # natural ones of a walk that ends at a seat
+_SPEEDS_MPS = {"jog": (1.2, 3.6)}  # natural speeds of a walk that ends at a seat
 _WALK_MPS = (0.45, 1.6)
-_DEFAULT_HEIGHT_M, _SITS_DOWN_S = 1.7, 1.6  # of the body that tries the seats of a room
-_DEEPEST_M, _MARGIN_M, _DEEP_COST_PER_M = 0.03, 0.02, 30.0  # how deep it may get into what is near a seat
-_MAX_TESTED = 24  # ways to sit on one seat that are tested closely
-_PULLED_M, _PULLED_TURNS_RAD = (0.15, 0.3, 0.45, 0.6), (0.0, -0.3, 0.3, -0.6, 0.6)  # of chairs that are pulled out
+_DEFAULT_HEIGHT_M, _SITS_DOWN_S = 1.7, 1.6  # of the body with which the seats of a room are tested
+_DEEPEST_M, _MARGIN_M, _DEEP_COST_PER_M = 0.03, 0.02, 30.0  # tolerated penetration into objects near a seat
+_MAX_TESTED = 24  # ways to sit on one seat tested in detail
+_PULLED_M, _PULLED_TURNS_RAD = (0.15, 0.3, 0.45, 0.6), (0.0, -0.3, 0.3, -0.6, 0.6)  # for chairs that are pulled out
 _DIRECTION_RAD = 0.9  # a seat lies in the direction of the sentence up to this angle
 
 
 @dataclass(frozen=True, kw_only=True)
 class Approach:
-    """How to sit on a seat, and where walks to it come from: (x, y) in metres."""
+    """How to sit on a seat, and where walks to it may start.
+
+    Attributes:
+        sitting: The way to sit.
+        gate_m: Start (x, y) in metres of a narrow path along the seat; None if the path is straight.
+        starts_m: Walkable places with a free straight path to the gate, or to the seat, (start, 2) metres.
+    """
 
     sitting: Sitting
-    gate_m: Float[Array, "2"] | None  # before a narrow way along the seat; None where the way is straight
-    starts_m: Float[Array, "start 2"]  # walkable places with a free straight way to the gate, or to the seat
+    gate_m: Float[Array, "2"] | None
+    starts_m: Float[Array, "start 2"]
 
     @property
     def corners_m(self) -> list[Float[Array, "2"]]:
-        """Where the walk turns, and its end in front of the seat."""
+        """Corners (x, y) of the walk in metres, the last one in front of the seat."""
         return [self.sitting.feet_m] if self.gate_m is None else [self.gate_m, self.sitting.feet_m]
 
     def scaled_to(self, body: SkeletonProportions) -> "Approach":
-        """The same for a body of exactly this size: its pelvis is on the seat."""
+        """The same approach for a body of another size: its pelvis is on the seat."""
         return replace(self, sitting=self.sitting.fitted_to(body))
 
 
 def approaches(floor: FloorMap, body: SkeletonProportions) -> list[Approach]:
-    """The ways to the usable seats of a room on which a body is clear of the rest; kept with the room."""
+    """Paths to the usable seats of a room on which a body is clear of everything else; cached with the room.
+
+    Args:
+        floor: Floor of the room.
+        body: Bone lengths, to which the approaches are scaled.
+    """
     usual = FloorMap.of(floor.scene, floor.range_window_m, _DEFAULT_HEIGHT_M, with_assumed=floor.with_assumed)
     if not usual.seat_approaches:
         one = SkeletonProportions(_DEFAULT_HEIGHT_M)
@@ -86,7 +97,16 @@ def approaches(floor: FloorMap, body: SkeletonProportions) -> list[Approach]:
 
 
 def fitting_approaches(ways: Sequence[Approach], word: str, scene: Scene) -> list[Approach]:
-    """Those to the seats that a word stands for; all of them where it fits none."""
+    """Filters approaches by the word for a seat.
+
+    Args:
+        ways: Approaches to all seats.
+        word: Word of the sentence, such as "couch"; "" for any.
+        scene: The room.
+
+    Returns:
+        Approaches to matching seats; all of them if none matches.
+    """
     kept = {id(sitting) for sitting in preferred([way.sitting for way in ways], word, scene)}
     return [way for way in ways if id(way.sitting) in kept]
 
@@ -94,7 +114,17 @@ def fitting_approaches(ways: Sequence[Approach], word: str, scene: Scene) -> lis
 def approach_from(
     trajectory: Trajectory, step: Step, ways: Sequence[Approach], given_rad: float | None
 ) -> Approach | None:
-    """The first way that a walk from here can take: free, in the given direction, at a natural speed."""
+    """The first approach open to a walk from the current position: free, in the given direction, at a natural speed.
+
+    Args:
+        trajectory: Trajectory so far.
+        step: The walk, with its time.
+        ways: Approaches in order of preference.
+        given_rad: Direction of the walk from +x towards +y; None for any.
+
+    Returns:
+        The approach, or None.
+    """
     here_m = trajectory.position_m
     for way in ways:
         corners = np.stack([here_m, *way.corners_m])
@@ -112,7 +142,17 @@ def approach_from(
 
 
 def start_of_walk(way: Approach, step: Step, direction_rad: float | None, rng: np.random.Generator) -> Array | None:
-    """A place (x, y) from which a walk in the step's time and direction takes this way; None where there is none."""
+    """Samples a start for a walk to a seat.
+
+    Args:
+        way: Approach to the seat.
+        step: The walk, with its time.
+        direction_rad: Direction of the walk from +x towards +y; None for any.
+        rng: Random stream.
+
+    Returns:
+        Position (x, y) in metres from which the walk fits time and direction; None if there is none.
+    """
     gaps_m = way.corners_m[0] - way.starts_m
     further_m = 0.0 if way.gate_m is None else distance_m(way.sitting.feet_m, way.gate_m)
     apart_m = np.hypot(*gaps_m.T) + further_m
@@ -126,7 +166,17 @@ def start_of_walk(way: Approach, step: Step, direction_rad: float | None, rng: n
 
 
 def walk_to_seat(trajectory: Trajectory, step: Step, way: Approach, *, first: bool) -> None:
-    """Lays out the walk: straight, or through the gate and on along the front of the seat."""
+    """Lays out a walk to a seat: straight, or through the gate and along the front of the seat.
+
+    Args:
+        trajectory: Trajectory so far, which is extended.
+        step: The walk, with its time.
+        way: Approach to the seat.
+        first: Whether the motion begins with this step.
+
+    Raises:
+        NoTrajectory: If there is no time to walk.
+    """
     corners = np.stack([trajectory.position_m, *way.corners_m])
     gaps = np.diff(corners, axis=0)
     lengths, directions = np.hypot(*gaps.T), np.arctan2(gaps[:, 1], gaps[:, 0])
@@ -146,7 +196,7 @@ def walk_to_seat(trajectory: Trajectory, step: Step, way: Approach, *, first: bo
 
 
 def _ways_to(seat: Sitting, floor: FloorMap, body: SkeletonProportions) -> list[Approach]:
-    """The least unusual ways to sit on a seat whose feet have room, can be walked to, and leave the body clear."""
+    """The least unusual ways to sit on a seat with room for the feet, a path to it, and a collision-free body."""
     cells = floor.walkable_m
     cells = cells[:: max(1, len(cells) // _MAX_STARTS)]
     found: list[Approach] = []
@@ -163,7 +213,7 @@ def _ways_to(seat: Sitting, floor: FloorMap, body: SkeletonProportions) -> list[
 
 
 def _clear_sittings(seat: Sitting, floor: FloorMap, body: SkeletonProportions) -> list[Sitting]:
-    """Ways to sit where somebody who sits down gets no deeper into furniture than is reported, the best first."""
+    """Ways to sit, the best first, whose penetration while sitting down stays below the reported depth."""
     sittings = [one for one in _sittings(seat, floor) if _has_room_for_feet(one, floor)]
     if not sittings:
         return []
@@ -198,19 +248,19 @@ def _clear_sittings(seat: Sitting, floor: FloorMap, body: SkeletonProportions) -
 
 
 def _has_room_for_feet(sitting: Sitting, floor: FloorMap) -> bool:
-    """Whether the floor before a seat is free, or only the chair stands on it that is pulled out."""
+    """Whether the floor in front of a seat is free, or occupied only by the chair that is pulled out."""
     was_chair = sitting.chair is not None and bool(sitting.chair.covers(sitting.feet_m))
     return was_chair or bool(floor.clearance_at(sitting.feet_m) > CLOSEST_FEET_M)
 
 
 def _is_alike(one: Sitting, other: Sitting) -> bool:
-    """Whether two ways to sit differ by a little shift only."""
+    """Whether two ways to sit differ by a small shift only."""
     apart_m = distance_m(one.seat_m, other.seat_m)
     return apart_m < _SHIFT_M / 2 and abs(one.facing_rad - other.facing_rad) < 0.01
 
 
 def _sittings(seat: Sitting, floor: FloorMap) -> Iterator[Sitting]:
-    """Sitting on a seat ahead, or turned to a side; on a wide one at several places along it, on a chair pulled out."""
+    """Sitting ahead or turned; on a wide seat at several places along it, or on a chair pulled out."""
     spare_m = max(0.0, (seat.width_m - _SEAT_WIDTH_M) / 2)
     along_m = np.linspace(-spare_m, spare_m, 1 + 2 * int(np.ceil(spare_m / _SHIFT_M)))
     places = [(float(shift_m), 0.0) for shift_m in along_m]
@@ -227,7 +277,7 @@ def _sittings(seat: Sitting, floor: FloorMap) -> Iterator[Sitting]:
 
 
 def _gates(sitting: Sitting, floor: FloorMap) -> list[Float[Array, "2"]]:
-    """Walkable places from which a narrow but free way leads along the front of the seat, the nearest first."""
+    """Walkable places from which a narrow but free path leads along the front of the seat, the nearest first."""
     lengths_m = np.arange(_GATE_STEP_M, _LONGEST_NARROW_M + 1e-9, _GATE_STEP_M)
     found = []
     for side in (-1.0, 1.0):
@@ -242,7 +292,7 @@ def _gates(sitting: Sitting, floor: FloorMap) -> list[Float[Array, "2"]]:
 
 
 def _are_free(floor: FloorMap, places_m: Array, sitting: Sitting, gate_m: Array | None) -> Array:
-    """From which places (place 2) the straight way to the gate, or to the seat itself, is free: (place,)."""
+    """Whether the straight path from each place (place, 2) to the gate, or to the seat itself, is free, (place,)."""
     if gate_m is None:
         return are_reachable(floor, places_m, sitting)
     lines_m = places_m[:, None] + np.linspace(0, 1, 60)[:, None] * (gate_m - places_m)[:, None]

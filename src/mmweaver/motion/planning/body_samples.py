@@ -1,4 +1,4 @@
-"""A moving body as points on the axes of its limbs, each with a thickness: what is tested against a room."""
+"""Samples a moving body by points on the axes of its limbs, each with a thickness, for collision tests with a room."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -31,12 +31,12 @@ _LIMB_ENDS = (
     ("left_elbow", "left_wrist"),
     ("right_elbow", "right_wrist"),
 )
-# Where a mean of the capsules is too thin: the shoulder blades, and a head wider than the neck that carries it.
+# Where the mean of the capsules is too thin: shoulder blades, and a head wider than its neck.
 _THICKER_M = {"neck": 0.02, "head": 0.015, "shoulder": 0.005}
 _RADIUS_STEP_M = 0.005  # mean radii are rounded up to it
 _SEATED = ("pelvis", "spine3", "left_hip", "right_hip", "left_collar", "right_collar")
-_SHARES = np.array([0.0, 0.33, 0.67, 1.0])  # where along a limb it is tested
-STEP_S = 0.1  # how often it is tested
+_SHARES = np.array([0.0, 0.33, 0.67, 1.0])  # positions along a limb
+STEP_S = 0.1  # sampling interval
 _SAME_M = 0.015  # a limb that has moved less since an earlier test is not tested again
 
 
@@ -60,25 +60,38 @@ _STARTS = np.array([joint(start) for start, _ in _LIMB_ENDS])
 _ENDS = np.array([joint(end) for _, end in _LIMB_ENDS])
 _IS_SOFT = np.array([start in _SEATED for start, _ in _LIMB_ENDS])
 _HAS_HAND = np.array([end.endswith("wrist") for _, end in _LIMB_ENDS])
-_HAND_M = capsule_between("left_wrist", "left_wrist").extend_m + 0.03  # beyond the wrist, most of its round tip too
+_HAND_M = capsule_between("left_wrist", "left_wrist").extend_m + 0.03  # beyond the wrist, with most of its round tip
 _TRUNK = ("pelvis", "spine3", "neck")
 _LEGS = tuple((f"{side}_hip", f"{side}_knee", f"{side}_ankle") for side in ("left", "right"))
 
 
 @dataclass(frozen=True, kw_only=True)
 class BodySamples:
-    """A body's limbs, ten times a second; points in metres, in the radar's frame or relative to the root."""
+    """Limbs of a body ten times per second.
+
+    Attributes:
+        points_m: Points in metres, in the radar's frame or relative to the root, (point, 3).
+        radius_m: Radius of the limb at each point in metres, (point,).
+        is_soft: Points of trunk and thighs, which sink into a seat, (point,).
+        time_s: Time of each point in seconds, (point,).
+        lowest_m: Joints at the time of the lowest pelvis, (22, 3).
+        lowest_s: That time in seconds.
+    """
 
     points_m: Float[Array, "point 3"]
     radius_m: Float[Array, " point"]
-    is_soft: Bool[Array, " point"]  # trunk and thighs, which sink into a seat
+    is_soft: Bool[Array, " point"]
     time_s: Float[Array, " point"]
-    lowest_m: Float[Array, "22 3"]  # the joints where the pelvis is lowest
+    lowest_m: Float[Array, "22 3"]
     lowest_s: float
 
     @classmethod
     def of(cls, pose: PoseSequence) -> "BodySamples":
-        """Of a pose, in the radar's frame."""
+        """Samples a pose sequence in the radar's frame.
+
+        Args:
+            pose: The motion.
+        """
         steps = np.arange(max(float(pose.time_s[0]), 0.0), float(pose.time_s[-1]), STEP_S)
         rows = np.unique(np.minimum(np.searchsorted(pose.time_s, steps), len(pose.time_s) - 1))
         joints = pose.joints_m[rows].astype(float)
@@ -98,7 +111,7 @@ class BodySamples:
         )
 
     def deduplicated(self) -> "BodySamples":
-        """Without the points of limbs that have hardly moved since an earlier time."""
+        """Removes the points of limbs that have moved less than 1.5 cm since an earlier time."""
         each = len(_LIMB_ENDS) * len(_SHARES)
         cells = np.rint(self.points_m / _SAME_M).astype(np.int64)
         limb = np.arange(len(cells)) % each
@@ -107,16 +120,24 @@ class BodySamples:
         return self._select(np.sort(one_each))
 
     def every_second_time(self) -> "BodySamples":
-        """Half as often, the time where the pelvis is lowest apart."""
+        """Halves the sampling rate; `lowest_m` is kept."""
         _, index = self._times
         return self._select(np.flatnonzero(index % 2 == 0))
 
     def relative_to(self, path: RootPath) -> "BodySamples":
-        """The same, relative to the root of the path that the body follows: x ahead, y to its left."""
+        """Transforms the points relative to the root of the path that the body follows: x ahead, y to its left.
+
+        Args:
+            path: Path of the body.
+        """
         return self._moved(path, inverse=True)
 
     def along(self, path: RootPath) -> "BodySamples":
-        """Points relative to a root, moved to another root path. Exact where neither body moves over the floor."""
+        """Transforms points relative to a root to another root path; exact if neither body moves over the floor.
+
+        Args:
+            path: Path of the other body.
+        """
         return self._moved(path, inverse=False)
 
     def _moved(self, path: RootPath, *, inverse: bool) -> "BodySamples":
@@ -151,7 +172,7 @@ class BodySamples:
 
     @property
     def ahead(self) -> Float[Array, "2"]:
-        """The direction from the hips to the knees with the pelvis lowest, on the floor: where a sitter faces."""
+        """Unit vector (x, y) from the hips to the knees with the pelvis lowest: where a sitter faces."""
         at = self.lowest_m
         knees = at[joint("left_knee")] + at[joint("right_knee")]
         ahead = (knees - at[joint("left_hip")] - at[joint("right_hip")])[:2]
@@ -159,7 +180,7 @@ class BodySamples:
 
     @property
     def pelvis_m(self) -> Float[Array, "3"]:
-        """The pelvis where it is lowest."""
+        """Pelvis (3,) at its lowest."""
         return self.lowest_m[joint("pelvis")]
 
     @property

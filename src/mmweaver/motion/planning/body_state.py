@@ -1,4 +1,4 @@
-"""How a motion ends, so that the next can begin there: place, heading, posture and seat."""
+"""Final state of a motion, from which the next can begin: position, heading, posture and seat."""
 
 from dataclasses import dataclass
 
@@ -9,12 +9,22 @@ from mmweaver.motion.planning.seating import Sitting
 
 @dataclass(frozen=True, kw_only=True)
 class BodyState:
-    """Where a body's root stands, (x, y) in metres, where it faces, and in which posture; in the radar's frame."""
+    """Final state of a body, in the radar's frame.
+
+    Attributes:
+        position_m: Position (x, y) of the root in metres.
+        heading_rad: Heading, from +x towards +y.
+        posture: feet, seat, knees or floor.
+        style: Side on which a lying body rests: back or front.
+        foot: Knee on which a body kneels, if on one.
+        sitting: The seat that is used, or directly behind.
+        controls: Pose parameters with their derivatives.
+    """
 
     position_m: tuple[float, float]
-    heading_rad: float  # from +x towards +y
-    posture: str = "feet"  # feet | seat | knees | floor
-    style: str = ""  # of lying: back | front
-    foot: Foot = ""  # of kneeling on one knee
-    sitting: Sitting | None = None  # the seat that is used, or that is right behind
-    controls: ControlsState | None = None  # how the body moves there
+    heading_rad: float
+    posture: str = "feet"
+    style: str = ""
+    foot: Foot = ""
+    sitting: Sitting | None = None
+    controls: ControlsState | None = None

@@ -26,23 +26,23 @@ Place = tuple[float, float]
 _ALLOWED_M, _ON_SEAT_M = 0.01, 0.16  # tolerated penetration, and that of trunk and thighs into the seat they sit on
 _SEAT_REACH_M = 0.65  # horizontal distance from a seat's centre within which a limb belongs to the sitter
 _SEAT_SQUARE_M = 0.4  # seats in one square share the points around them
-_SEAT_AHEAD_M, _SEAT_BELOW_M = 0.12, 0.05  # points farther ahead of the pelvis and no lower are not the seat itself
-_TABLE_BEHIND_M = 0.03  # extra distance to a table behind a sitter, whose edge may have been taken for a backrest
-_EDGE_M = 0.02  # and to what is ahead: of an edge the last points that are seen lie this much within it
-_ABOVE_ARMRESTS_M = 0.2  # above the pelvis: points next to the trunk are not the seat's there
-_SHIN_M = 0.45  # height of foot and shin of somebody who sits
-_LOWEST_M = 0.09  # points lower above the floor are floor: soles touch it
-_ABOUT_SEAT_M = 0.15  # of a place to sit, whose height is measured
-_SHIN_TOP_M, _MAX_SHIN_SHARE = 0.2, 0.5  # lower things and smaller parts are no mattress
+_SEAT_AHEAD_M, _SEAT_BELOW_M = 0.12, 0.05  # points farther ahead of the pelvis and no lower do not belong to the seat
+_TABLE_BEHIND_M = 0.03  # extra distance to a table behind a sitter, whose edge may be mistaken for a backrest
+_EDGE_M = 0.02  # and to objects ahead: the last visible points of an edge lie this far inside it
+_ABOVE_ARMRESTS_M = 0.2  # above the pelvis: points next to the trunk do not belong to the seat
+_SHIN_M = 0.45  # height of foot and shin of a sitter
+_LOWEST_M = 0.09  # lower points are floor, which the soles touch
+_ABOUT_SEAT_M = 0.15  # radius around a seat within which its height is measured
+_SHIN_TOP_M, _MAX_SHIN_SHARE = 0.2, 0.5  # lower objects and smaller shares are no mattress
 _MAX_POINTS = 34_000
-_LOW_M = 0.64  # beds and low tables are solid: points are added at these depths below theirs
+_LOW_M = 0.64  # beds and low tables are solid: points are added below theirs at these depths
 _LOW_DOWN_M = (0.05, 0.1, 0.15, 0.2, 0.25)
 _HALF_CHAIR_M, _BACK_BEHIND_M, _CHAIR_TOP_M = 0.32, 0.05, 1.1
-_FRONT_AHEAD_M, _FRONT_TOP_M = 0.05, 0.66  # ahead of its middle a chair is no higher: armrests end there, tables begin
-_NEAR_CHAIR_M = 1.3  # of what is looked at with the chair away
-_WALL_BEYOND_M, _WALL_DEPTH_M = 0.3, 0.6  # walls continue beyond what is seen of them; how deep one counts
-_THICK_M = 0.04  # least thickness: of a table's top below its seen points, of a cupboard's front behind them
-# The part of the room that is tabulated: what lies farther is out of any radar's window that the floor map covers.
+_FRONT_AHEAD_M, _FRONT_TOP_M = 0.05, 0.66  # a chair is no higher ahead of its middle: armrests end, tables begin
+_NEAR_CHAIR_M = 1.3  # radius evaluated without the chair
+_WALL_BEYOND_M, _WALL_DEPTH_M = 0.3, 0.6  # extension of walls beyond their visible part; depth of a wall
+_THICK_M = 0.04  # minimum thickness of a table top below its points, and of a front behind them
+# Tabulated part of the room; the floor map covers no range window beyond it.
 _SIDE_M, _AWAY_M, _HIGHEST_M = 3.4, (-0.3, 5.4), 2.5
 
 _latest: list["CollisionMap"] = []
@@ -50,19 +50,42 @@ _latest: list["CollisionMap"] = []
 
 @dataclass(frozen=True)
 class PulledChair:
-    """A chair that is taken as pulled out: where it stands in the photo, (x, y) in metres, and where it faces."""
+    """A chair assumed to be pulled out.
+
+    Attributes:
+        place_m: Position (x, y) in the photo in metres.
+        facing_rad: Heading of the chair, from +x towards +y.
+        by_m: Distance in metres by which it is pulled back; not compared, since the room without it does not depend on
+            it.
+    """
 
     place_m: Place
     facing_rad: float
-    by_m: float = field(compare=False)  # what is there without it is the same, however far it is pulled
+    by_m: float = field(compare=False)
 
     def holds(self, points_m: Float[Array, "point 3"], floor_z_m: float) -> Bool[Array, " point"]:
-        """Which points belong to it where it stands in the photo; what is ahead above the armrests is a table's."""
+        """Whether points belong to the chair in the photo; points ahead above the armrests belong to a table.
+
+        Args:
+            points_m: Points in the radar's frame, metres, (point, 3).
+            floor_z_m: Height of the floor, metres.
+
+        Returns:
+            Mask (point,).
+        """
         top_m = np.where(self._is_front(points_m), _FRONT_TOP_M, _CHAIR_TOP_M)
         return self.covers(points_m[:, :2]) & (points_m[:, 2] < floor_z_m + top_m)
 
     def has_back_at(self, points_m: Float[Array, "point 3"], floor_z_m: float) -> Bool[Array, " point"]:
-        """Which points are of its back and rear legs, which stand upright as table legs do."""
+        """Whether points belong to the chair's back and rear legs, which are upright like table legs.
+
+        Args:
+            points_m: Points in the radar's frame, metres, (point, 3).
+            floor_z_m: Height of the floor, metres.
+
+        Returns:
+            Mask (point,).
+        """
         return self.holds(points_m, floor_z_m) & ~self._is_front(points_m)
 
     def _is_front(self, points_m: Float[Array, "point 3"]) -> Bool[Array, " point"]:
@@ -70,7 +93,14 @@ class PulledChair:
         return np.asarray((points_m[:, :2] - np.array(self.place_m)) @ ahead > _FRONT_AHEAD_M)
 
     def covers(self, places_m: Float[Array, "*shape 2"]) -> Bool[Array, "*shape"]:
-        """Which places (x, y) it stands on in the photo."""
+        """Whether the chair covers positions where it stands in the photo.
+
+        Args:
+            places_m: Positions (x, y) in metres, (..., 2).
+
+        Returns:
+            Mask of the positions.
+        """
         away = places_m - np.array(self.place_m)
         cos, sin = np.cos(self.facing_rad), np.sin(self.facing_rad)
         along, aside = away[..., 0] * cos + away[..., 1] * sin, away[..., 1] * cos - away[..., 0] * sin
@@ -79,13 +109,17 @@ class PulledChair:
 
 @dataclass(frozen=True)
 class CollisionMap:
-    """What a body can collide with in a scene: measured points above the floor, inferred occluded geometry, walls."""
+    """Obstacles of a scene: measured points above the floor, inferred occluded geometry, walls."""
 
     scene: Scene
 
     @classmethod
     def of(cls, scene: Scene) -> "CollisionMap":
-        """The map of a scene; the last one is cached, because many motions are tested in one scene."""
+        """The map of a scene; the last one is cached, because many motions are tested in one scene.
+
+        Args:
+            scene: The room, in the radar's frame.
+        """
         if not _latest or _latest[0].scene is not scene:
             _latest[:] = [cls(scene)]
         return _latest[0]
@@ -102,7 +136,7 @@ class CollisionMap:
 
     @cached_property
     def _tops_m(self) -> Float[Array, "point 3"]:
-        """Points of table tops, inferred ones included: unlike a backrest, nobody leans into them."""
+        """Points of table tops, inferred ones included: unlike a backrest, a body may not lean into them."""
         return table_tops(self.scene, self._measured_m)
 
     @cached_property
@@ -116,7 +150,7 @@ class CollisionMap:
         return self._solid.points_m, thinned(self._tops_m), thinned(self._legs_m)
 
     def _hard_near(self, seat: Place) -> tuple[Float[Array, "solid 3"], Float[Array, "top 3"], Float[Array, "leg 3"]]:
-        """`_hard_m` in a square around a seat; kept, as many ways to sit on the same seat are compared."""
+        """`_hard_m` in a square around a seat; cached, since many ways to sit on the same seat are compared."""
         square = (round(seat[0] / _SEAT_SQUARE_M), round(seat[1] / _SEAT_SQUARE_M))
         if square not in self._near_seats:
             middle = (square[0] * _SEAT_SQUARE_M, square[1] * _SEAT_SQUARE_M)
@@ -130,7 +164,7 @@ class CollisionMap:
         return {}
 
     def _without(self, chair: PulledChair) -> Float[Array, "solid 3"]:
-        """Everything solid around a chair but the chair itself; kept, as many ways to sit on it are compared."""
+        """All solid points around a chair except its own; cached, since many ways to sit on it are compared."""
         if chair not in self._chairless:
             solid, tops, legs = (_about(points, chair.place_m, _NEAR_CHAIR_M) for points in self._hard_m)
             others = solid[~chair.holds(solid, self.scene.floor_z_m)]
@@ -145,7 +179,7 @@ class CollisionMap:
 
     @cached_property
     def _solid(self) -> DistanceField:
-        """Distance to measured points, and to what must lie just behind and below them."""
+        """Distance to measured points, and to inferred points just behind and below them."""
         points = self._measured_m
         behind = points * (1 + _THICK_M / np.maximum(np.linalg.norm(points, axis=1, keepdims=True), 1e-6))
         low = self._low_m
@@ -178,7 +212,14 @@ class CollisionMap:
         return heights
 
     def low_surface_m(self, place_m: Float[Array, "2"]) -> float:
-        """How high above the floor low furniture is about a place (x, y); 0 where most of it is none."""
+        """Height of low furniture around a position.
+
+        Args:
+            place_m: Position (x, y) in metres.
+
+        Returns:
+            Median height above the floor in metres; 0 if most of the area is free of low furniture.
+        """
         column, row = np.floor((place_m + np.array([_SIDE_M, -_AWAY_M[0]])) / CELL_M).astype(int)
         reach = int(_ABOUT_SEAT_M / CELL_M)
         around = self._low_tops_m[max(row - reach, 0) : row + reach + 1, max(column - reach, 0) : column + reach + 1]
@@ -186,9 +227,12 @@ class CollisionMap:
         return float(np.median(heights)) if 2 * heights.size > max(around.size, 1) else 0.0
 
     def has_room_for_shins(self, knees_m: Float[Array, "2"], feet_m: Float[Array, "2"], seat_height_m: float) -> bool:
-        """Whether what a seat belongs to ends before a sitter's shins, from the knees to the feet, (x, y) in metres.
+        """Whether the surface of a seat ends in front of a sitter's shins; in the middle of a bed it does not.
 
-        In the middle of a bed it goes on there.
+        Args:
+            knees_m: Position (x, y) of the knees in metres.
+            feet_m: Position (x, y) of the feet in metres.
+            seat_height_m: Height of the seat above the floor in metres.
         """
         line = knees_m + np.linspace(0, 1, 4)[:, None] * (feet_m - knees_m)
         around = np.array([(a, b) for a in (-0.06, 0.0, 0.06) for b in (-0.06, 0.0, 0.06)])
@@ -201,7 +245,7 @@ class CollisionMap:
 
     @cached_property
     def _standing(self) -> DistanceField:
-        """The same with the space below tables and other furniture, which is closed to who does not sit there."""
+        """`_solid` plus the space below tables and other furniture, which is blocked except for sitters."""
         below = self._field(below_tops(self.scene, np.concatenate([self._tops_m, self._low_m])))
         return replace(below, distance_m=np.minimum(below.distance_m, self._solid.distance_m))
 
@@ -218,10 +262,18 @@ class CollisionMap:
         margin_m: float = 0.0,
         chair: PulledChair | None = None,
     ) -> float:
-        """Greatest penetration depth in metres of the body, thickened by a margin, into anything; 0 where it is clear.
+        """Maximum penetration of a moving body into the room.
 
-        Around the seats at `seats_m` trunk and thighs may sink into the surface, but not into a table ahead. `chair`
-        is not where the photo shows it.
+        Around seats, trunk and thighs may sink into the surface, but not into a table ahead.
+
+        Args:
+            pose: Motion, or its samples.
+            seats_m: Positions (x, y) in metres of the seats on which the person sits.
+            margin_m: Thickness added to the body, metres.
+            chair: A chair that is not where the photo shows it.
+
+        Returns:
+            Depth in metres; 0 if the body is clear.
         """
         samples = (pose if isinstance(pose, BodySamples) else BodySamples.of(pose)).deduplicated()
         worst = float(self.estimates_m([samples], [seats_m], margin_m=margin_m, chairs=[chair])[0])
@@ -230,7 +282,17 @@ class CollisionMap:
     def beyond_seats_m(
         self, body: BodySamples, seats_m: Sequence[Place], *, margin_m: float, chair: PulledChair | None = None
     ) -> float:
-        """`penetration_m` into what is near the seats of a sitter but no part of them."""
+        """Maximum penetration of a sitter into objects near the seats that are not part of them.
+
+        Args:
+            body: Samples of the body.
+            seats_m: Positions (x, y) of the seats in metres.
+            margin_m: Thickness added to the body, metres.
+            chair: A chair that is not where the photo shows it.
+
+        Returns:
+            Depth in metres; 0 if the body is clear.
+        """
         return max((self._beyond_seat_m(body, seat, margin_m, chair) for seat in dict.fromkeys(seats_m)), default=0.0)
 
     def estimates_m(
@@ -241,7 +303,17 @@ class CollisionMap:
         margin_m: float,
         chairs: Sequence[PulledChair | None] = (),
     ) -> Float[Array, " body"]:
-        """`penetration_m` of many bodies at once, where what is ahead of a sitter counts as part of the seat."""
+        """`penetration_m` of many bodies at once, in which objects ahead of a sitter count as part of the seat.
+
+        Args:
+            bodies: Samples of the bodies.
+            seats_m: Positions (x, y) of the seats of each body, metres.
+            margin_m: Thickness added to the bodies, metres.
+            chairs: Displaced chair of each body, or None; empty for none at all.
+
+        Returns:
+            Depth in metres, (body,).
+        """
         points = np.concatenate([body.points_m for body in bodies])
         radius = np.concatenate([body.radius_m for body in bodies])
         at_seat = np.concatenate([_near(body, seats) for body, seats in zip(bodies, seats_m, strict=True)])
@@ -269,7 +341,7 @@ class CollisionMap:
     def _moved_chair_depth_m(
         self, chair: PulledChair, points: Float[Array, "point 3"], distance_m: Float[Array, " point"]
     ) -> Float[Array, " point"]:
-        """Distances of a body's points, those about the chair without it."""
+        """Distances of a body's points; those near the chair are evaluated without it."""
         near = distances_m(points[:, :2], chair.place_m) < _NEAR_CHAIR_M - FARTHEST_M
         out = distance_m.copy()
         out[near] = np.minimum(_distances_m(points[near], self._without(chair)), FARTHEST_M)
@@ -278,9 +350,9 @@ class CollisionMap:
     def _beyond_seat_m(
         self, body: BodySamples, seat: Place, margin_m: float, chair: PulledChair | None = None
     ) -> float:
-        """How deep a sitter is in what is near the seat but no part of it.
+        """Penetration of a sitter into objects near the seat that are not part of it.
 
-        That is what lies ahead of the seat and above its surface, and tables behind it.
+        These are objects ahead of the seat and above its surface, and tables behind it.
         """
         solid, tops, legs = (_about(points, seat, _SEAT_REACH_M + FARTHEST_M) for points in self._hard_near(seat))
         if chair is not None:
@@ -320,7 +392,7 @@ def _distances_m(points: Float[Array, "point 3"], obstacle: Float[Array, "other 
 def _into_wall_m(
     plane: Plane, points: Float[Array, "point 3"], reach_m: Float[Array, " point"]
 ) -> Float[Array, " point"]:
-    """How deep limbs of a thickness are in a wall; farther behind it is another room, seen through a door."""
+    """Penetration of limbs into a wall; farther behind it is another room, visible through a door."""
     away = points - plane.centre_m
     inside = np.abs(away @ plane.axis_u) < plane.half_size_m[0] + _WALL_BEYOND_M
     into = np.where(inside, reach_m - away @ plane.normal, 0.0)

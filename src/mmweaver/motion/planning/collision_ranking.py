@@ -1,7 +1,7 @@
-"""Chooses, among many placements of a motion, the one whose body collides least with the room.
+"""Chooses the placement of a motion whose body collides least with the room.
 
-The placement that costs least is animated and tested. Only where it collides, all others are compared, without
-animating them: their bodies are estimated by moving the first one along their paths.
+The placement of least cost is animated and tested. Only if it collides are all others compared, without animating
+them: their bodies are estimated by moving the first one along their paths.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -20,58 +20,58 @@ from mmweaver.motion.planning.occluded_geometry import occluded_share, unseen_sh
 from mmweaver.motion.planning.placement import Placement
 
 REPORTED_PENETRATION_M = 0.03  # deeper collisions are reported to the user
-MARGIN_M = 0.03  # depth is noisy, and furniture is seen from one side only
+MARGIN_M = 0.03  # depth is noisy, and furniture is visible from one side only
 
-MAX_TESTED, MAX_ANIMATED = 3, 1  # of an attempt's placements: compared closely, and of those that move animated
-# A sitter's occluded trunk and legs count as a collision of this depth: nobody knows what is there.
+MAX_TESTED, MAX_ANIMATED = 3, 1  # placements per attempt compared in detail; of those that move, animated
+# A sitter's occluded trunk and legs count as a collision of this depth: the space there is unknown.
 _OCCLUDED_TRUNK_M, _OCCLUDED_LEGS_M = 0.075, 0.04
-# Above a seat that was found there is room for a trunk, though the seat's own back may occlude it.
+# A detected seat has room for a trunk above it, though the seat's own back may occlude it.
 _BEHIND_OWN_BACK_M = 0.03
-# A stool that is invented though there is a seat counts as much: a seat is better where the body gets into little.
+# Cost of an invented stool if the room has a seat: a seat is preferred despite a small penetration.
 _INVENTED_SEAT_M = 0.06
-_ON_SEAT_M = 0.1  # a place to sit so near to a seat is on it
-_NEGLIGIBLE_M = 0.01  # less occlusion than this is no reason to test further placements
-# The most that a placement may cost before the next attempt is made; attempt 2 leaves the room's seats.
+_ON_SEAT_M = 0.1  # a sitter within this distance is on the seat
+_NEGLIGIBLE_M = 0.01  # smaller occlusion costs trigger no further tests
+# Maximum cost before the next attempt is made; attempt 2 abandons the room's seats.
 _ENOUGH_M = {1: 0.0, 2: REPORTED_PENETRATION_M}
-_ENOUGH_SEATED_M = 0.02  # of attempt 2 for who sits: depths are of the seen surface, a shin in a bed's side has few
-_KEPT_M = 0.02  # the first placement is taken if it keeps so much to everything
-_WORTH_M = 0.003  # estimates are no better than that: what promises less is not animated
-_SAME_SEAT_M = 0.02  # seats whose heights differ less are sat on alike
+_ENOUGH_SEATED_M = 0.02  # the same of attempt 2 for sitters: few points are visible in a bed's side
+_KEPT_M = 0.02  # the first placement is accepted at this clearance
+_WORTH_M = 0.003  # accuracy of estimates: smaller gains are not animated
+_SAME_SEAT_M = 0.02  # seats whose heights differ by less are equivalent
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Tested:
-    """A placement whose body was tested, or estimated: how deep it collides (negative: the distance it keeps)."""
+    """A placement with the tested or estimated penetration of its body (negative: clearance)."""
 
     placement: Placement
     penetration_m: float
     trunk_cost_m: float = 0.0  # for an occluded trunk
-    legs_cost_m: float = 0.0  # for occluded legs, which those under a table often are
-    pose: PoseSequence | None = None  # where it was animated
-    samples: BodySamples | None = None  # where it was estimated
+    legs_cost_m: float = 0.0  # for occluded legs, frequent under tables
+    pose: PoseSequence | None = None  # if animated
+    samples: BodySamples | None = None  # if estimated
 
     @property
     def cost_m(self) -> float:
-        """What placements are ranked by."""
+        """Cost by which placements are ranked, metres."""
         invented_m = _INVENTED_SEAT_M if self.placement.invents_seat else 0.0
         return self.penetration_m + self.trunk_cost_m + self.legs_cost_m + invented_m
 
     @property
     def is_clear(self) -> bool:
-        """Whether there is no reason to look for another placement."""
+        """Whether no other placement needs to be tested."""
         hidden_m = self.trunk_cost_m + self.legs_cost_m
         return self.penetration_m <= -MARGIN_M and hidden_m <= _NEGLIGIBLE_M and not self.placement.invents_seat
 
 
 @dataclass(frozen=True, kw_only=True)
 class RankedPlacement(_Tested):
-    """A placement, and the body animated along it."""
+    """A placement with the body animated along it."""
 
     pose: PoseSequence
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is reported to the user where the body collides."""
+        """Notes to the user if the body collides."""
         if self.penetration_m <= REPORTED_PENETRATION_M:
             return ()
         depth_cm = 100 * self.penetration_m
@@ -83,15 +83,21 @@ def least_collision(
     animate: Callable[[Placement], PoseSequence],
     obstacles: CollisionMap,
 ) -> RankedPlacement:
-    """The first placement whose motion keeps a margin to everything, hands included; else the one that costs least.
+    """Finds the first placement whose motion keeps a margin to everything, hands included, else the one of least cost.
 
-    `candidates(attempt)` gives placements, the best first. Attempt 1 is made where none of attempt 0 is clear, attempt
-    2, which leaves the room's seats, where the collision is so deep that it would be reported.
+    Args:
+        candidates: Called with an attempt; returns placements, the best first. Attempt 1 is made if no placement of
+            attempt 0 is clear; attempt 2, which abandons the room's seats, if the collision would be reported.
+        animate: Animates a placement.
+        obstacles: Obstacles of the room.
+
+    Returns:
+        The placement with its animated body.
     """
     ranking = _Ranking(animate, obstacles)
     best = ranking.best_of(candidates(0))
     for attempt in (1, 2):
-        # Occluded legs alone are no reason to leave the room's seats.
+        # Occluded legs alone do not justify abandoning the room's seats.
         cost_m = best.cost_m if attempt == 1 else best.penetration_m + best.trunk_cost_m
         sits = attempt == 2 and bool(best.placement.seats_m)
         if best.is_clear or cost_m <= (_ENOUGH_SEATED_M if sits else _ENOUGH_M[attempt]):
@@ -113,7 +119,7 @@ class _Ranking:
         self._sketches: dict[tuple[int, ...] | None, BodySamples] = {}  # relative to the root, by `_key`
 
     def best_of(self, placements: Sequence[Placement], *, better_than: _Tested | None = None) -> _Tested:
-        """The first clear one, else the one of least cost, `better_than` included."""
+        """The first clear placement, else the one of least cost, including `better_than`."""
         best = better_than
         placements = sorted(placements, key=lambda placement: placement.invents_seat)  # stools last
         if best is None:
@@ -137,14 +143,14 @@ class _Ranking:
         return best
 
     def _refined(self, estimates: Sequence[_Tested]) -> Iterator[_Tested]:
-        """Estimates with what is ahead of a sitter: as they come where they stay, the best first where they move."""
+        """Estimates including objects ahead of a sitter: in order for still bodies, the best first for moving ones."""
         refined = (self._refined_ahead(estimate) for estimate in estimates)
         if all(estimate.placement.is_still for estimate in estimates):
             return refined
         return iter(_sorted(list(refined)))
 
     def _estimated(self, placements: Sequence[Placement]) -> list[_Tested]:
-        """All placements with estimated collisions: first the clear ones in the given order, then by their cost."""
+        """All placements with estimated collisions: first the clear ones in the given order, then by cost."""
         if not placements:
             return []
         bodies = [self._sketch(placement).along(placement.path) for placement in placements]
@@ -186,7 +192,7 @@ class _Ranking:
         return self._tested(placement, samples, pose)
 
     def _refined_ahead(self, estimate: _Tested) -> _Tested:
-        """An estimate that counts what is ahead of a sitter, too; of others it has all there is."""
+        """An estimate including objects ahead of a sitter; estimates of other bodies are complete already."""
         if estimate.samples is None or not estimate.placement.seats_m:
             return estimate
         ahead_m = self._obstacles.beyond_seats_m(
@@ -195,7 +201,7 @@ class _Ranking:
         return replace(estimate, penetration_m=max(estimate.penetration_m, ahead_m - MARGIN_M))
 
     def _tested(self, placement: Placement, samples: BodySamples, pose: PoseSequence) -> _Tested:
-        # Beyond the margin all are equally good.
+        # Beyond the margin, all placements are equally good.
         penetration_m = (
             self._obstacles.penetration_m(samples, placement.seats_m, margin_m=MARGIN_M, chair=placement.chair)
             - MARGIN_M
@@ -212,7 +218,7 @@ class _Ranking:
     def _occlusion_costs_m(
         self, bodies: Sequence[BodySamples], placements: Sequence[Placement]
     ) -> tuple[Float[np.ndarray, " body"], Float[np.ndarray, " body"]]:
-        """What the occluded trunks and legs of sitters cost."""
+        """Cost of occluded trunks and legs of sitters."""
         seats = [one.seats_m if one.chair is None else (one.chair.place_m,) for one in placements]
         sits = np.array([bool(each) for each in seats])
         if not sits.any():
@@ -226,15 +232,15 @@ class _Ranking:
 
 
 def _is_found(scene: Scene, seat: tuple[float, float]) -> bool:
-    """Whether a place to sit is on a seat of the room."""
+    """Whether a sitter is on a detected seat of the room."""
     return any(distance_m(found.position_m[:2], seat) < max(found.size_m) / 2 + _ON_SEAT_M for found in scene.seats)
 
 
 def _sorted(estimates: Sequence[_Tested]) -> list[_Tested]:
-    """The clear ones as they come, then the others by their cost."""
+    """The clear ones in order, then the others by cost."""
     return sorted(estimates, key=lambda one: (not one.is_clear, 0.0 if one.is_clear else one.cost_m))
 
 
 def _key(placement: Placement) -> tuple[int, ...] | None:
-    """Which placements share one estimate of the body: on the spot those with seats of one height, else all."""
+    """Key of placements that share one estimate of the body: on the spot those with equal seat heights, else all."""
     return placement.seat_heights(_SAME_SEAT_M) if placement.is_still else None

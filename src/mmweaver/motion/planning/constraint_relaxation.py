@@ -1,7 +1,7 @@
-"""What is tried where a motion finds no room, from what changes least to what changes most; and ways on.
+"""Fallbacks if a motion finds no room, from the smallest to the largest change, and recovery options.
 
-Going on elsewhere; floor that is only assumed; walking on the spot; everything else that travels on the spot, and falls
-another way; at last, lying where furniture is touched least.
+Going on elsewhere; floor that is only assumed; walking on the spot; all other travelling movements on the spot, and
+falls in another direction; finally, lying where furniture is touched least.
 """
 
 import math
@@ -22,8 +22,8 @@ from mmweaver.motion.planning.named_places import cells_of
 from mmweaver.motion.planning.targets import SEATS
 
 Result = TypeVar("Result")
-_WALKS = ("walk", "jog", "limp", "stagger")  # gaits that can be shown on the spot
-# What is done on the spot instead of what travels, and its word; all else marches, and walks.
+_WALKS = ("walk", "jog", "limp", "stagger")  # gaits with an on-the-spot variant
+# On-the-spot replacement of travelling movements, and its verb; all others march ("walks").
 _ON_THE_SPOT = {
     "jog": ("jog", "runs"),
     "stumble": ("stumble", "stumbles"),
@@ -35,12 +35,12 @@ _ON_THE_SPOT = {
     "walking_lunge": ("lunge", "lunges"),
 }
 _FALL_STYLES = {"back": "backwards", "left": "to the left", "right": "to the right", "front": "forwards"}
-_FALLEN = ("fall", "lie", "roll_over", "get_up")  # the steps of a fall, which lie one way
+_FALLEN = ("fall", "lie", "roll_over", "get_up")  # steps of a fall, which share their direction
 _SAYS_AHEAD = frozenset({"forward", "forwards", "ahead", "straight", "advances", "advancing"})
-DEEP_M = 0.03  # into furniture, where floor is tight: another way is tried first
+DEEP_M = 0.03  # penetration on a tight floor beyond which other fallbacks are tried first
 _ANY_NEAR_M, _ANY_FAR_M = 0.2, 30.0
 _MAX_RADARS = 3
-_MUCH_MORE = 2.0  # times the free floor: what a longer window must show to be of help
+_MUCH_MORE = 2.0  # factor by which a longer window must increase the free floor to be suggested
 ASSUMED_FLOOR = (
     "the photo shows no free floor for this: the person stands where floor is assumed, behind furniture or before what"
     " fills the picture, and may be occluded"
@@ -61,13 +61,25 @@ def relax_constraints(
     depth_m: Callable[[Result], float] = lambda _: 0.0,
     farthest_m: float = math.inf,
 ) -> tuple[MotionPlan, Result, tuple[str, ...]]:
-    """The first of several ways to compose a plan that finds room: the plan then, its result, and notes.
+    """Composes a plan by the first of several fallbacks that finds room.
 
-    In this order: as it is; walking on elsewhere than ahead; on floor that is only assumed; walking on the spot; where
-    `may_touch`, all that travels on the spot, falls another way, and at last kneeling or lying where furniture is
-    touched least. Of these last ways the first whose result is at most DEEP_M into furniture (`depth_m`), else the one
-    that is least. Raises the error of the first way, with ways on where no floor is free at all; `farthest_m`: what
-    the radar can see at most.
+    In order: unchanged; walking on in another direction; on assumed floor; walking on the spot; with `may_touch`, all
+    travelling movements on the spot, falls in another direction, and finally kneeling or lying where furniture is
+    touched least. Of these last ones, the first whose penetration is at most DEEP_M, else the one with the least.
+
+    Args:
+        plan: Scheduled plan.
+        floor: Floor of the room.
+        compose_on: Composes a plan on a floor; raises InputError if there is no room.
+        may_touch: Whether fallbacks that may touch furniture are tried.
+        depth_m: Penetration of a result into furniture, metres.
+        farthest_m: Maximum range in metres with all range bins, for the recovery options.
+
+    Returns:
+        The relaxed plan, its result, and notes on the changes.
+
+    Raises:
+        InputError: The error of the unchanged plan if no fallback succeeds; with recovery options if floor is missing.
     """
     first_error: InputError | None = None
     deep: list[tuple[MotionPlan, Result, tuple[str, ...]]] = []
@@ -120,7 +132,14 @@ def _ways(plan: MotionPlan, floor: FloorMap, *, may_touch: bool) -> Iterator[Opt
 
 
 def going_on_elsewhere(plan: MotionPlan) -> tuple[MotionPlan, tuple[str, ...]]:
-    """The plan with walks that only go on ('walks on', after a turn) led where there is room, and notes on them."""
+    """Frees the direction of walks that only continue ('walks on', after a turn).
+
+    Args:
+        plan: Scheduled plan.
+
+    Returns:
+        The changed plan, and a note per changed walk.
+    """
     ahead = [step for step in plan.steps[1:] if step.lower in ("walk", "jog") and step.direction == Way.FORWARDS]
     walks = [step for step in ahead if not _SAYS_AHEAD & {*step.clause.split()}]
     notes = tuple(
@@ -142,12 +161,12 @@ def _like(floor: FloorMap, *, with_assumed: bool = False, is_tight: bool = False
 
 
 def _walks_somewhere(step: Step) -> bool:
-    """Whether a step is a walk that leads to nothing in the room."""
+    """Whether a step is a walk without a destination in the room."""
     return step.moves and step.lower in _WALKS and not step.target and step.direction != Way.SEAT and _is_free(step)
 
 
 def _travels(step: Step) -> bool:
-    """Whether a step leads anywhere; what goes to a place or a landmark other than a seat is done there or refused."""
+    """Whether a step may be replaced on the spot: it travels, but to no place or landmark other than a seat."""
     return step.moves and (not step.target or step.target in SEATS) and _is_free(step)
 
 
@@ -156,7 +175,15 @@ def _is_free(step: Step) -> bool:
 
 
 def on_the_spot(plan: MotionPlan, is_meant: Callable[[Step], bool]) -> tuple[MotionPlan, tuple[str, ...]]:
-    """The plan with some of its steps that move shown on the spot, and notes on them."""
+    """Replaces steps by their on-the-spot variants.
+
+    Args:
+        plan: Scheduled plan.
+        is_meant: Selects the steps.
+
+    Returns:
+        The changed plan, and a note per changed step.
+    """
     steps, notes = [], []
     for step in plan.steps:
         if is_meant(step):
@@ -168,9 +195,14 @@ def on_the_spot(plan: MotionPlan, is_meant: Callable[[Step], bool]) -> tuple[Mot
 
 
 def falling(plan: MotionPlan, style: str) -> tuple[MotionPlan, tuple[str, ...]]:
-    """The plan with its falls another way (back, left, right or front), and notes on them.
+    """Redirects the falls of a plan; lying after a fall and getting up follow.
 
-    What is done lying after a fall, and getting up, goes the same way.
+    Args:
+        plan: Scheduled plan.
+        style: back, left, right or front.
+
+    Returns:
+        The changed plan, and a note per redirected fall.
     """
     steps, notes, fallen = [], [], False
     for step in plan.steps:
@@ -185,11 +217,18 @@ def falling(plan: MotionPlan, style: str) -> tuple[MotionPlan, tuple[str, ...]]:
 
 
 def recovery_options(floor: FloorMap, plan: MotionPlan, farthest_m: float = math.inf) -> dict[str, Any]:
-    """Where there would be room: the nearest free place, the range window it needs, and presets that have it.
+    """Suggests where there would be room: the nearest free position, its range window, and radar presets that cover it.
 
-    Where the room has nothing of a place that the plan names, the nearest of that place. The window is one that the
-    radar, which sees up to `farthest_m`, can have, or None. Empty where the photo shows no such floor at any distance,
-    or hardly more than in the window.
+    If the room lacks floor at a place that the plan names, the nearest position of that place.
+
+    Args:
+        floor: Floor of the room in the current range window.
+        plan: Scheduled plan.
+        farthest_m: Maximum range of the radar in metres.
+
+    Returns:
+        `nearest_place_m`, `range_m` (None if beyond the radar) and `radars`; empty if the photo shows no such floor at
+        any distance, or hardly more than in the window.
     """
     place = None
     for reach_m in dict.fromkeys((min(farthest_m, _ANY_FAR_M), _ANY_FAR_M)):
@@ -211,7 +250,7 @@ def recovery_options(floor: FloorMap, plan: MotionPlan, farthest_m: float = math
 
 
 def _nearest_place(floor: FloorMap, plan: MotionPlan, window_m: tuple[float, float]) -> Float[np.ndarray, "2"] | None:
-    """The free place in another window that is nearest to the radar, if that window shows much more floor."""
+    """The free position nearest to the radar in another window, if that window shows much more floor."""
     anywhere = FloorMap.of(floor.scene, window_m, floor.height_m, with_assumed=True)
     named = [step.place for step in plan.steps if step.place is not None and not len(_cells_if_any(step.place, floor))]
     if not named and np.count_nonzero(anywhere.walkable) < _MUCH_MORE * np.count_nonzero(floor.walkable):
@@ -221,7 +260,7 @@ def _nearest_place(floor: FloorMap, plan: MotionPlan, window_m: tuple[float, flo
 
 
 def _cells_if_any(place: Place, floor: FloorMap) -> Float[np.ndarray, "cell 2"]:
-    """The walkable cells of a place, none where the room has none."""
+    """The walkable cells of a place; empty if the room has none."""
     try:
         return cells_of(place, floor)
     except NoRoomError:
@@ -231,7 +270,17 @@ def _cells_if_any(place: Place, floor: FloorMap) -> Float[np.ndarray, "cell 2"]:
 def window_about(
     scene: Scene, height_m: float, place_m: np.ndarray, window_m: tuple[float, float]
 ) -> tuple[float, float]:
-    """The range window in metres, as wide as the given one at least, that holds a person at a place (x, y)."""
+    """Range window that covers a person at a position.
+
+    Args:
+        scene: The room.
+        height_m: Height of the body in metres.
+        place_m: Position (x, y) in metres.
+        window_m: Window that is extended.
+
+    Returns:
+        Nearest and farthest slant range in metres, at least as wide as `window_m`.
+    """
     heights_m = scene.floor_z_m + height_m * np.array([0.0, 0.5, 1.0])
     slant_m = np.sqrt(float(place_m @ place_m) + heights_m**2)
     near_m, far_m = float(slant_m.min()) - 0.3, float(slant_m.max()) + 0.3

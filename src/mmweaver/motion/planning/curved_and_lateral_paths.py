@@ -21,24 +21,35 @@ from mmweaver.motion.planning.trajectory import (
 
 Array = np.ndarray
 SPECIAL = ("sidestep", "stumble", "leap", "forward_roll")
-ROLL_M = 1.85  # of a forward roll, from standing to standing
+ROLL_M = 1.85  # length of a forward roll, from standing to standing
 LYING_ROOM_M = 0.22  # clearance on either side of a lying body
-_TIGHT_COST = 40.0  # of a body none of which is on free floor: more than all else that a trajectory costs
+_TIGHT_COST = 40.0  # of a body entirely off the free floor: exceeds all other costs of a trajectory
 SIDESTEP_M = 0.3  # length of one sidestep
-_OUT_OF_VIEW = 0.5  # as bad as so much of the room being short
+_OUT_OF_VIEW = 0.5  # equivalent share of missing clearance
 _TIGHT = "the free floor has no room"
 _BEND_RADII_M = (1.3, 1.0, 0.8, 0.65, 0.5, 0.4)
 
 
 def is_curved_or_lateral(step: Step) -> bool:
-    """Whether `lay_other` is what lays this step out."""
+    """Whether `lay_curved_or_lateral` lays out this step."""
     return step.lower in SPECIAL or (bool(step.arc_deg) and step.direction != Shape.CIRCLE)
 
 
 def lay_curved_or_lateral(
     trajectory: Trajectory, step: Step, direction_rad: float | None, *, first: bool, last: bool
 ) -> None:
-    """Lays out a step of `is_other`; `direction_rad` is what the sentence says, None where it says nothing."""
+    """Lays out a step for which `is_curved_or_lateral` holds.
+
+    Args:
+        trajectory: Trajectory so far, which is extended.
+        step: The step.
+        direction_rad: Direction in the sentence, from +x towards +y; None if open.
+        first: Whether the motion begins with this step.
+        last: Whether the motion ends with this step.
+
+    Raises:
+        NoTrajectory: If there is no room.
+    """
     if step.arc_deg:
         _walk_bend(trajectory, step, direction_rad, first=first, last=last)
     elif step.lower == "sidestep":
@@ -48,7 +59,7 @@ def lay_curved_or_lateral(
 
 
 def _relative(trajectory: Trajectory, step: Step, direction_rad: float | None) -> float | None:
-    """The direction, where forwards and backwards are relative to the person's heading even at the very start."""
+    """The direction, with forwards and backwards relative to the person's heading even at the very start."""
     if step.direction == Way.FORWARDS:
         return trajectory.heading_rad
     if step.direction in (Way.BACKWARDS, Way.BACK):
@@ -73,7 +84,7 @@ def _walk_bend(trajectory: Trajectory, step: Step, direction_rad: float | None, 
         length = min(radius * abs(bend), speed * lasts)
         if length < slowest * min(lasts, 1.0):
             continue
-        stops = length < slowest * lasts  # a short bend ends before its time is over
+        stops = length < slowest * lasts  # a short bend ends early
         span = length / (0.85 * speed) + 0.5 * (ramps[0] + RAMP_S) if stops else step.end_s - begin
         span = min(span, step.end_s - begin)
         move = Move(
@@ -89,7 +100,7 @@ def _walk_bend(trajectory: Trajectory, step: Step, direction_rad: float | None, 
         if trajectory.floor.can_stand(places).all():
             trajectory.append(move, places, 0.5 * stops)
             trajectory.heading_rad += bend
-            across, along = move.end_shift_m[::-1]  # who walks back goes straight to where the bend began
+            across, along = move.end_shift_m[::-1]  # walking back leads straight to the start of the bend
             trajectory.last_direction_rad = float(np.arctan2(across, along))
             return
     raise NoTrajectory("no room for the bend")
@@ -118,7 +129,7 @@ def _walk_sideways(trajectory: Trajectory, step: Step, direction_rad: float | No
 
 
 def _short_move(trajectory: Trajectory, step: Step, direction_rad: float | None) -> None:
-    """A short move: caught after a push, or leapt."""
+    """A short move: caught after a push, or a leap."""
     direction = _relative(trajectory, step, direction_rad)
     if direction is None:
         directions_rad = (0.5 * np.pi, -0.5 * np.pi) if step.style == "side" else (0.0, np.pi, np.pi)
@@ -140,7 +151,12 @@ def _short_move(trajectory: Trajectory, step: Step, direction_rad: float | None)
 
 
 def turn_by(trajectory: Trajectory, step: Step) -> None:
-    """Turns by `step.turn_deg`, to the left where positive; more than half a turn is possible."""
+    """Turns by `step.turn_deg`, to the left if positive; more than half a turn is possible.
+
+    Args:
+        trajectory: Trajectory so far, which is extended.
+        step: The step.
+    """
     either = random_sign(trajectory.rng) if step.either_side else 1.0
     angle_rad, start_s, span_s = either * np.radians(step.turn_deg), step.start_s, step.end_s - step.start_s
     lasts = min(SLOWER_TURNS[step.speed + 1] * (0.25 + abs(angle_rad) / 3.2), max(span_s, 0.6))
@@ -149,7 +165,7 @@ def turn_by(trajectory: Trajectory, step: Step) -> None:
 
 
 def _tight_note(step: Step) -> str:
-    """What is said of a body on a floor too small for it."""
+    """Note on a body on a floor too small for it."""
     how = (
         "on hands and knees" if step.lower == "crawl" else "on the knees" if step.posture == "knees" else "full length"
     )
@@ -157,9 +173,17 @@ def _tight_note(step: Step) -> str:
 
 
 def check_floor_space(trajectory: Trajectory, step: Step, body: SkeletonProportions) -> None:
-    """Raises NoTrajectory where a kneeling, falling or lying body would be in furniture.
+    """Checks that a kneeling, falling or lying body fits on the floor.
 
-    On a floor that is tight that costs the more, the less of the body is on free floor, and is said.
+    On a tight floor it adds a cost that grows with the share of the body off the free floor, and a note.
+
+    Args:
+        trajectory: Trajectory so far.
+        step: The step after which the body is tested.
+        body: Bone lengths.
+
+    Raises:
+        NoTrajectory: If the body would penetrate furniture on a floor that is not tight.
     """
     if step.posture not in ("floor", "knees") and step.lower not in ("kneel_up", "get_up"):
         return
@@ -186,7 +210,7 @@ def check_floor_space(trajectory: Trajectory, step: Step, body: SkeletonProporti
             raise NoTrajectory("no floor to lie on")
         out_of_view = _OUT_OF_VIEW * ~trajectory.floor.sees(places)
         trajectory.cost += _TIGHT_COST * float(np.maximum(short_m / LYING_ROOM_M, out_of_view).mean())
-        rises = step.lower in ("kneel_up", "get_up")  # from where it was said that the body is
+        rises = step.lower in ("kneel_up", "get_up")  # from a position that has been reported already
         if not (rises and any(note.startswith(_TIGHT) for note in trajectory.notes)):
             trajectory.notes.append(_tight_note(step))
     trajectory.cost += float(trajectory.floor.cost_at(places).mean())

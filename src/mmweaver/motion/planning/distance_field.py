@@ -1,4 +1,4 @@
-"""Distance to the nearest of many points, tabulated once on a grid, so that a query costs an interpolation."""
+"""Distance to the nearest of many points, tabulated on a grid, so that a query is an interpolation."""
 
 from dataclasses import dataclass
 
@@ -18,10 +18,17 @@ class DistanceField:
 
     low_m: Float[Array, "3"]  # corner of the grid
     distance_m: Float[Array, "x y z"]
-    points_m: Float[Array, "occupied 3"]  # one for each occupied cell: the mean of the points in it
+    points_m: Float[Array, "occupied 3"]  # mean of the points in each occupied cell
 
     def at(self, positions_m: Float[Array, "*shape 3"]) -> Float[Array, "*shape"]:
-        """Distance to the nearest point, trilinearly interpolated, at most `FARTHEST_M`."""
+        """Distance to the nearest point by trilinear interpolation.
+
+        Args:
+            positions_m: Positions in metres, (..., 3).
+
+        Returns:
+            Metres, truncated at `FARTHEST_M`.
+        """
         from scipy.ndimage import map_coordinates
 
         cells = np.moveaxis((positions_m - self.low_m) / CELL_M - 0.5, -1, 0)
@@ -29,10 +36,18 @@ class DistanceField:
 
 
 def distance_field(points_m: Points, low_m: Float[Array, "3"], high_m: Float[Array, "3"]) -> DistanceField:
-    """The field of the points between two corners of a box, metres.
+    """Tabulates the distance to points in a box.
 
     A cell's distance is that to the mean of the points in the nearest occupied cell, which is exact to a third of a
-    cell; a coarse grid then resolves surfaces finer than itself.
+    cell; a coarse grid thus resolves surfaces finer than itself.
+
+    Args:
+        points_m: Points in metres, (point, 3).
+        low_m: Lower corner of the box, metres.
+        high_m: Upper corner of the box, metres.
+
+    Returns:
+        The field, in cells of 5 cm.
     """
     from scipy.ndimage import distance_transform_edt
 
@@ -62,7 +77,14 @@ def distance_field(points_m: Points, low_m: Float[Array, "3"], high_m: Float[Arr
 
 
 def thinned(points_m: Points) -> Float[Array, "cell 3"]:
-    """One point for each occupied cell of the space: the mean of the points in it."""
+    """Mean of the points in each occupied cell of 5 cm.
+
+    Args:
+        points_m: Points in metres, (point, 3).
+
+    Returns:
+        One point per occupied cell, (cell, 3).
+    """
     if not len(points_m):
         return points_m
     cells = np.floor(points_m / CELL_M).astype(np.int64)
@@ -73,7 +95,14 @@ def thinned(points_m: Points) -> Float[Array, "cell 3"]:
 
 
 def interior(field: DistanceField) -> Bool[Array, "x y z"]:
-    """Occupied cells whose four neighbours on the same level are occupied too: the inside of what is solid."""
+    """Occupied cells whose four neighbours on the same level are occupied too: the inside of solid objects.
+
+    Args:
+        field: Distance field.
+
+    Returns:
+        Mask of the field's cells, (x, y, z).
+    """
     from scipy.ndimage import binary_erosion
 
     cells = np.floor((field.points_m - field.low_m) / CELL_M).astype(int)

@@ -7,30 +7,38 @@ from jaxtyping import Float
 
 
 def unit_vector(angle_rad: float) -> Float[np.ndarray, "2"]:
-    """The vector (x, y) of length 1 at an angle from +x towards +y."""
+    """Unit vector (x, y) at an angle in radians from +x towards +y."""
     return np.array([np.cos(angle_rad), np.sin(angle_rad)])
 
 
 def bearing_rad(vector: Any) -> float:
-    """The angle of a vector (x, y) from +x towards +y, in radians."""
+    """Angle of a vector (x, y) from +x towards +y, in radians."""
     return float(np.arctan2(vector[1], vector[0]))
 
 
 def distance_m(one: Any, other: Any) -> float:
-    """The distance of two positions (x, y), in metres."""
+    """Distance between two positions (x, y), in metres."""
     return float(np.hypot(*(np.asarray(one) - np.asarray(other))))
 
 
 def distances_m(positions: Float[np.ndarray, "position 2"], other: Any) -> Float[np.ndarray, " position"]:
-    """The distance of each of many positions (x, y) to another, in metres."""
+    """Distance of each of many positions to another one.
+
+    Args:
+        positions: Positions (x, y) in metres, (position, 2).
+        other: Position (x, y) in metres.
+
+    Returns:
+        Metres, (position,).
+    """
     return np.hypot(*(positions - np.asarray(other)).T)
 
 
 def random_sign(rng: np.random.Generator) -> float:
-    """-1 or 1."""
+    """Samples -1 or 1."""
     return float(rng.choice([-1.0, 1.0]))
 
 
 def random_choice(options: Any, rng: np.random.Generator) -> Any:
-    """One of a sequence or of an array's rows, each equally likely."""
+    """Samples one of a sequence, or of an array's rows, uniformly."""
     return options[int(rng.integers(len(options)))]

@@ -1,4 +1,4 @@
-"""The floor of a scene as a person can use it: free cells within the radar's range window and the camera's view."""
+"""The floor of a scene as usable by a person: free cells within the radar's range window and the camera's view."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -22,25 +22,33 @@ SIDEWAYS_RADIUS_M = 0.15  # half the depth of the trunk
 AZIMUTH_LIMIT_RAD = np.radians(40.0)
 TORSO_HEIGHT = 0.68  # of the body's height
 TORSO_HALF_DEPTH_M = 0.2
-_UNSEEN_COST = 1.5  # of a position whose floor is assumed, not seen
+_UNSEEN_COST = 1.5  # cost of a position whose floor is assumed, not measured
 _OFF_GRID_COST = 3.0
-_MAX_STARTS, _FARTHEST_M = 300, 4.0  # places whose straight ways are tabulated, and how long those are at most
+_MAX_STARTS, _FARTHEST_M = 300, 4.0  # places with tabulated straight paths, and their maximum length
 _STEP_M = 0.04  # between the positions at which a path is tested
-_SEAT_EDGE_M = 0.05  # clearance next to the seat just left
-_AHEAD_DEG = 12.0  # azimuths up to this cost nothing: the antennas' beam is strongest straight ahead
+_SEAT_EDGE_M = 0.05  # clearance next to the seat that the body leaves
+_AHEAD_DEG = 12.0  # no cost up to this azimuth: the antenna beam is strongest at boresight
 HEIGHT_STEP_M, _MAX_CACHED = 0.05, 12
 _latest: list["FloorMap"] = []
 
 
 @dataclass(frozen=True)
 class FloorMap:
-    """Clearance, visibility and cost of positions (x, y) in metres in the radar's frame, from the free-space grid."""
+    """Clearance, visibility and cost of positions (x, y) in metres in the radar's frame, from the free-space grid.
+
+    Attributes:
+        scene: The room.
+        range_window_m: Nearest and farthest slant range in metres that the radar keeps.
+        height_m: Height of the body in metres.
+        with_assumed: Whether assumed floor counts as free.
+        is_tight: Whether a body that kneels, lies or stands in a gap may touch furniture.
+    """
 
     scene: Scene
     range_window_m: tuple[float, float]
     height_m: float
-    with_assumed: bool = False  # whether floor that was only assumed counts as free
-    is_tight: bool = False  # whether who kneels, lies or stands in a gap may touch what stands about
+    with_assumed: bool = False
+    is_tight: bool = False
 
     @classmethod
     def of(
@@ -52,9 +60,16 @@ class FloorMap:
         with_assumed: bool = False,
         is_tight: bool = False,
     ) -> "FloorMap":
-        """The map for a body of about this height; the last ones are cached, as many motions are placed in one scene.
+        """The map for a body of about this height; recent ones are cached, since many motions are placed in one scene.
 
-        A step in height of `HEIGHT_STEP_M` moves what is in view by less than a cell.
+        Heights are rounded to `HEIGHT_STEP_M`, which moves the visible region by less than a cell.
+
+        Args:
+            scene: The room, in the radar's frame.
+            range_window_m: Nearest and farthest slant range in metres that the radar keeps.
+            height_m: Height of the body in metres.
+            with_assumed: Whether assumed floor counts as free.
+            is_tight: Whether the body may touch furniture.
         """
         height_m = round(height_m / HEIGHT_STEP_M) * HEIGHT_STEP_M
         key = (range_window_m, height_m, with_assumed, is_tight)
@@ -76,7 +91,7 @@ class FloorMap:
 
     @cached_property
     def is_free(self) -> Bool[Array, "y x"]:
-        """Free cells, those whose floor was only assumed included where `with_assumed`."""
+        """Free cells, including assumed floor with `with_assumed`."""
         free = self.scene.free_space
         return free.is_free if not self.with_assumed or free.is_assumed is None else free.is_free | free.is_assumed
 
@@ -97,22 +112,22 @@ class FloorMap:
 
     @cached_property
     def place_cells(self) -> dict[Place, Float[Array, "cell 2"]]:
-        """Walkable cells (x, y) in metres of the places that a plan names; filled by `placement`."""
+        """Walkable cells (x, y) in metres of the places named in a plan; filled by `placement`."""
         return {}
 
     @cached_property
     def seat_approaches(self) -> list[list[Any]]:
-        """The ways to the seats; filled by `approaches`."""
+        """Approaches to the seats; filled by `approaches`."""
         return []
 
     @cached_property
     def in_view(self) -> Bool[Array, "y x"]:
-        """Whether radar and camera see a body that stands in a cell."""
+        """Whether a body standing in a cell is visible to radar and camera."""
         return self.sees(self.cell_centres_m)
 
     @cached_property
     def walkable(self) -> Bool[Array, "y x"]:
-        """Whether a body can stand in a cell: enough clearance, and in view; if tight and none has it, sideways."""
+        """Whether a body can stand in a cell: enough clearance, and in view; sideways on a tight floor without any."""
         is_wide = (self.clearance_m >= BODY_RADIUS_M) & self.in_view
         if self.is_tight and not is_wide.any():
             return (self.clearance_m >= SIDEWAYS_RADIUS_M) & self.in_view
@@ -125,7 +140,7 @@ class FloorMap:
 
     @cached_property
     def cell_cost(self) -> Float[Array, "y x"]:
-        """Soft cost of a cell: floor not seen, off the radar's axis, feet or head outside range window or picture."""
+        """Soft cost of a cell: unmeasured floor, off the radar's axis, feet or head outside range window or picture."""
         ground = np.hypot(self.cell_centres_m[..., 0], self.cell_centres_m[..., 1])
         floor = self.scene.floor_z_m
         farthest = np.hypot(ground, max(-floor, floor + self.height_m, 0.0))
@@ -144,14 +159,21 @@ class FloorMap:
 
     @cached_property
     def _unseen_share(self) -> Float[Array, "y x"]:
-        """Share of the floor under a body that was assumed, not seen."""
+        """Share of the floor under a body that was assumed, not measured."""
         from scipy.ndimage import uniform_filter
 
         across = 2 * round(BODY_RADIUS_M / self.cell_m) + 1
         return np.asarray(uniform_filter((~self.scene.free_space.is_seen).astype(float), across, mode="nearest"))
 
     def sees(self, positions_m: Positions) -> Bool[Array, "*shape"]:
-        """Whether the torso is in the range window, within 40 degrees of the radar's axis and the picture's width."""
+        """Whether a torso is in the range window, within 40 degrees of boresight, and within the picture's width.
+
+        Args:
+            positions_m: Positions (x, y) in metres, (..., 2).
+
+        Returns:
+            Mask of the positions.
+        """
         z = self.scene.floor_z_m + TORSO_HEIGHT * self.height_m
         distance = np.sqrt(positions_m[..., 0] ** 2 + positions_m[..., 1] ** 2 + z**2)
         low, high = self.range_window_m
@@ -192,15 +214,36 @@ class FloorMap:
         )
 
     def can_stand(self, positions_m: Positions) -> Bool[Array, "*shape"]:
-        """Whether each position is walkable."""
+        """Whether a body can stand at each position.
+
+        Args:
+            positions_m: Positions (x, y) in metres, (..., 2).
+
+        Returns:
+            Mask of the positions; False off the grid.
+        """
         return np.asarray(self._bordered[0][self._cells(positions_m)])
 
     def clearance_at(self, positions_m: Positions) -> Float[Array, "*shape"]:
-        """Distance in metres to the nearest cell that is not free, 0 off the grid."""
+        """Distance to the nearest cell that is not free.
+
+        Args:
+            positions_m: Positions (x, y) in metres, (..., 2).
+
+        Returns:
+            Metres, 0 off the grid.
+        """
         return np.asarray(self._bordered[1][self._cells(positions_m)])
 
     def is_seen_floor(self, positions_m: Positions) -> Bool[Array, "*shape"]:
-        """Whether the photo shows free floor at each position."""
+        """Whether the photo shows free floor at each position.
+
+        Args:
+            positions_m: Positions (x, y) in metres, (..., 2).
+
+        Returns:
+            Mask of the positions; False off the grid.
+        """
         return np.asarray(self._seen_floor[self._cells(positions_m)])
 
     @cached_property
@@ -208,15 +251,30 @@ class FloorMap:
         return np.pad(self.scene.free_space.is_free & self.scene.free_space.is_seen, 1)
 
     def cost_at(self, positions_m: Positions) -> Float[Array, "*shape"]:
-        """`cell_cost` at each position."""
+        """`cell_cost` at each position.
+
+        Args:
+            positions_m: Positions (x, y) in metres, (..., 2).
+
+        Returns:
+            Cost of each position, 3 off the grid.
+        """
         return np.asarray(self._bordered[2][self._cells(positions_m)])
 
     def free_length_m(
         self, position_m: Float[Array, "2"], direction_rad: float, wanted_m: float, excused_m: float = 0.0
     ) -> float:
-        """How far in metres a body can go straight from a position, at most `wanted_m`.
+        """Length of the free straight path from a position.
 
-        Within `excused_m` of the position it may be closer to furniture than a body's radius (the seat just left).
+        Args:
+            position_m: Position (x, y) in metres.
+            direction_rad: Direction from +x towards +y.
+            wanted_m: Maximum length in metres.
+            excused_m: Distance in metres within which the body may be closer to furniture than its radius (the seat
+                that it leaves).
+
+        Returns:
+            Metres, at most `wanted_m`.
         """
         return float(self.free_lengths_m(position_m, np.array([direction_rad]), wanted_m, excused_m)[0])
 
@@ -227,19 +285,37 @@ class FloorMap:
         wanted_m: float,
         excused_m: float = 0.0,
     ) -> Float[Array, " way"]:
-        """`free_length_m` in several directions."""
+        """`free_length_m` in several directions.
+
+        Args:
+            position_m: Position (x, y) in metres.
+            directions_rad: Directions (way,) from +x towards +y.
+            wanted_m: Maximum length in metres.
+            excused_m: As in `free_length_m`.
+
+        Returns:
+            Metres, (way,).
+        """
         steps = np.append(np.arange(0.0, wanted_m, _STEP_M), wanted_m)
         ways = np.stack([np.cos(directions_rad), np.sin(directions_rad)], axis=-1)
         lines_m = position_m + steps[:, None] * ways[:, None]
         is_free = self.can_stand(lines_m)
         if excused_m:
             is_free |= (steps < excused_m) & (self.clearance_at(lines_m) > _SEAT_EDGE_M)
-        first = np.argmin(is_free, axis=1)  # the first that is not, 0 where all are
+        first = np.argmin(is_free, axis=1)  # the first blocked one, 0 if all are free
         reached = steps[np.maximum(first - 1, 0)]
         return np.where(is_free.all(axis=1), wanted_m, reached)
 
     def are_free_ways(self, starts_m: Float[Array, "way 2"], ends_m: Float[Array, "way 2"]) -> Bool[Array, " way"]:
-        """Whether a body can go straight from each start to its end."""
+        """Whether a body can move straight from each start to its end.
+
+        Args:
+            starts_m: Starts (x, y) in metres, (way, 2).
+            ends_m: Ends (x, y) in metres, (way, 2).
+
+        Returns:
+            Mask (way,).
+        """
         gaps = ends_m - starts_m
         lengths, directions = np.hypot(*gaps.T), np.arctan2(gaps[:, 1], gaps[:, 0])
         longest = float(lengths.max(initial=0.0))
@@ -252,10 +328,13 @@ class FloorMap:
         return {}
 
     def straight_starts(self, direction: Direction | None) -> tuple[Float[Array, "start 2"], Float[Array, " start"]]:
-        """Walkable places (x, y), and how far in metres one can go straight from each; at most `_FARTHEST_M`.
+        """Walkable places with the length of their free straight path; cached, since walks of a room need the same few.
 
-        `direction` is left, right, towards or away (from the radar), or None for the best of several. Kept, as most
-        walks of a room need the same few.
+        Args:
+            direction: left, right, towards or away (from the radar); None for the best of eight directions.
+
+        Returns:
+            Places (x, y) in metres, (start, 2), and lengths in metres, at most 4 m, (start,).
         """
         if direction not in self._starts:
             cells = self.walkable_m
@@ -270,14 +349,21 @@ class FloorMap:
     def _straight_m(
         self, places_m: Float[Array, "start 2"], directions_rad: Float[Array, " start"]
     ) -> Float[Array, " start"]:
-        """How far in metres one can go straight from each place in its direction."""
+        """Length in metres of the free straight path from each place in its direction."""
         steps = np.arange(0.0, _FARTHEST_M, 2 * _STEP_M)
         ways = np.stack([np.cos(directions_rad), np.sin(directions_rad)], axis=-1)
         is_free = self.can_stand(places_m[:, None] + steps[:, None] * ways[:, None])
         return np.where(is_free.all(axis=1), _FARTHEST_M, steps[np.maximum(np.argmin(is_free, axis=1) - 1, 0)])
 
     def longest_free_m(self, wanted_m: float) -> float:
-        """The longest straight path in metres, at most `wanted_m`, from some places in eight directions; kept."""
+        """Length of the longest straight path from some places in eight directions; cached.
+
+        Args:
+            wanted_m: Maximum length in metres.
+
+        Returns:
+            Metres, 0 without walkable floor.
+        """
         if wanted_m not in self._longest_m:
             cells = self.walkable_m
             some = cells[:: max(1, len(cells) // 40)]
@@ -291,14 +377,28 @@ class FloorMap:
         return {}
 
     def nearest_walkable_m(self, position_m: Float[Array, "2"]) -> Float[Array, "2"] | None:
-        """Centre (x, y) of the walkable cell nearest to a position, in metres; None where none is walkable."""
+        """Centre of the nearest walkable cell.
+
+        Args:
+            position_m: Position (x, y) in metres.
+
+        Returns:
+            Centre (x, y) in metres; None if no cell is walkable.
+        """
         positions_m = self.walkable_m
         if not len(positions_m):
             return None
         return positions_m[np.argmin(distances_m(positions_m, position_m))]
 
     def check_start(self, start_m: tuple[float, float]) -> None:
-        """Raises InputError, naming the nearest walkable position, where nobody can start at `start_m` (x, y)."""
+        """Checks that a motion can start at a position.
+
+        Args:
+            start_m: Position (x, y) in metres.
+
+        Raises:
+            InputError: If it is not walkable, naming the nearest walkable position.
+        """
         spot = np.array(start_m, dtype=float)
         if bool(self.can_stand(spot)):
             return

@@ -15,22 +15,29 @@ from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.targets import SEATS, describe_found, kinds_of
 
 Array = np.ndarray
-NEAR_M = 1.2  # from the middle of what one stands near
-BESIDE_M, REACH_M = 0.25, 1.8  # from the middle of what one stands behind, in front or at a side of: least and most
+NEAR_M = 1.2  # "near": from the middle of the object
+BESIDE_M, REACH_M = 0.25, 1.8  # "behind", "in front", at a side: minimum and maximum from the middle
 WIDTH_M = 0.9  # half the width of that strip
-BETWEEN_M, BETWEEN_SHARE = 0.5, (0.15, 0.85)  # from the line that joins two things, and along it
-AT_WALL_M, NEAR_WALL_M = 0.6, 0.9  # from a wall: who stands against it, and near it
+BETWEEN_M, BETWEEN_SHARE = 0.5, (0.15, 0.85)  # from the line between two objects, and share along it
+AT_WALL_M, NEAR_WALL_M = 0.6, 0.9  # from a wall: "against", and "near"
 DOORWAY_M = 0.8  # from the middle of the door
-SQUARE_RAD = 0.5  # walls that make a corner are within so much of a right angle
-MEETING_M = 0.6  # beyond its end, where the photo shows no more of it, a wall may go on to a corner
+SQUARE_RAD = 0.5  # deviation of a corner from a right angle
+MEETING_M = 0.6  # extension of a wall beyond its visible end to a corner
 RANGE_TOLERANCE_M = 0.2
-SHARE = 1 / 3  # of the free floor that is left, right, far ...
+SHARE = 1 / 3  # of the free floor that counts as left, right, far ...
 
 
 def settled(plan: MotionPlan) -> MotionPlan:
-    """The plan with places at the steps that can obey them: where the person starts, or the walk before goes.
+    """Assigns places to the steps that can realize them: the start, or the preceding walk.
 
-    Raises InputError for a place that nobody walks to.
+    Args:
+        plan: Scheduled plan.
+
+    Returns:
+        The plan with the places moved.
+
+    Raises:
+        InputError: If no walk leads to a place.
     """
     steps = list(plan.steps)
     for k, step in enumerate(steps):
@@ -50,14 +57,23 @@ def settled(plan: MotionPlan) -> MotionPlan:
 
 
 def _is_open(step: Step) -> bool:
-    """Whether the sentence leaves open where a walk goes."""
+    """Whether the destination of a walk is open."""
     return not (step.direction or step.target or step.arc_deg or step.place) and step.lower in ("walk", "jog")
 
 
 def cells_of(place: Place, floor: FloorMap) -> Float[Array, "cell 2"]:
-    """The walkable cells (x, y) of a place, in metres.
+    """The walkable cells of a place.
 
-    Raises NoRoomError where the room has none, InputError where it lacks what the place is relative to.
+    Args:
+        place: Place in the sentence.
+        floor: Floor of the room.
+
+    Returns:
+        Cells (x, y) in metres, (cell, 2).
+
+    Raises:
+        NoRoomError: If the place has no free floor.
+        InputError: If the room lacks what the place is relative to.
     """
     cells = floor.walkable_m
     _check_possible(place)
@@ -83,7 +99,7 @@ def cells_of(place: Place, floor: FloorMap) -> Float[Array, "cell 2"]:
 
 
 def _check_possible(place: Place) -> None:
-    """Raises InputError for places where nobody can be shown in any room."""
+    """Raises InputError for places that cannot be shown in any room."""
     part: Place | None = place
     while part is not None:
         if part.relation == "under":
@@ -100,7 +116,7 @@ def _check_possible(place: Place) -> None:
 
 
 def _middles(kind: str, place: Place, scene: Scene) -> list[Float[Array, "2"]]:
-    """Middles of what the place is relative to. Raises InputError where the photo shows none."""
+    """Middles of the objects that the place is relative to. Raises InputError if the photo shows none."""
     if kind == "corner":
         found = _corners(scene)
     else:
@@ -118,7 +134,7 @@ def _middles(kind: str, place: Place, scene: Scene) -> list[Float[Array, "2"]]:
 
 
 def _walls(place: Place, scene: Scene) -> list[Float[Array, "2 2"]]:
-    """The ends (x, y) of the walls of a room. Raises InputError where the photo shows none."""
+    """The ends (x, y) of the walls of a room. Raises InputError if the photo shows none."""
     given = [np.tile(np.asarray(mark.position_m[:2], float), (2, 1)) for mark in scene.landmarks if mark.kind == "wall"]
     walls = given or [_ends(plane) for plane in scene.planes if plane.kind == "wall"]
     if not walls:
@@ -130,7 +146,7 @@ def _walls(place: Place, scene: Scene) -> list[Float[Array, "2 2"]]:
 
 
 def _ends(wall: Plane) -> Float[Array, "2 2"]:
-    """Where a wall begins and ends on the floor, (x, y) in metres."""
+    """Ends of a wall on the floor, (x, y) in metres."""
     axes = ((wall.axis_u, wall.half_size_m[0]), (wall.axis_v, wall.half_size_m[1]))
     axis, half_m = min(axes, key=lambda one: abs(float(one[0][2])))
     along = np.asarray(axis, float)[:2] * half_m
@@ -139,7 +155,7 @@ def _ends(wall: Plane) -> Float[Array, "2 2"]:
 
 
 def _corners(scene: Scene) -> list[Float[Array, "2"]]:
-    """Where two walls of the photo meet, or would a little beyond what it shows of them."""
+    """Corners where two walls of the photo meet, or would a little beyond their visible ends."""
     walls = [_ends(plane) for plane in scene.planes if plane.kind == "wall"]
     found = []
     for (a, b), (c, d) in combinations(walls, 2):
@@ -157,20 +173,20 @@ def _corners(scene: Scene) -> list[Float[Array, "2"]]:
 
 
 def _nearest_on(wall: Float[Array, "2 2"], points: Float[Array, "point 2"]) -> Float[Array, "point 2"]:
-    """The points of a wall that are nearest to others."""
+    """Nearest points on a wall."""
     along = wall[1] - wall[0]
     share = np.clip((points - wall[0]) @ along / max(float(along @ along), 1e-9), 0.0, 1.0)
     return wall[0] + share[:, None] * along
 
 
 def _near_wall(place: Place, scene: Scene, cells: Float[Array, "cell 2"]) -> Bool[Array, " cell"]:
-    """Which cells are at, or near, one of the walls."""
+    """Mask of cells at, or near, one of the walls."""
     away = np.min([np.hypot(*(cells - _nearest_on(wall, cells)).T) for wall in _walls(place, scene)], axis=0)
     return away <= (AT_WALL_M if place.relation == "against" else NEAR_WALL_M)
 
 
 def _between(place: Place, scene: Scene, cells: Float[Array, "cell 2"]) -> Bool[Array, " cell"]:
-    """Which cells lie between two things: near the line from the one to the other, at neither of its ends."""
+    """Mask of cells between two objects: near the line between them, away from its ends."""
     inside = np.zeros(len(cells), bool)
     for one, other in _pairs(place, scene):
         gap = other - one
@@ -182,7 +198,7 @@ def _between(place: Place, scene: Scene, cells: Float[Array, "cell 2"]) -> Bool[
 
 
 def _pairs(place: Place, scene: Scene) -> list[tuple[Float[Array, "2"], Float[Array, "2"]]]:
-    """The two ends of each line on which a place between two things may lie. Raises InputError without two things."""
+    """Ends of each line between two objects. Raises InputError without two objects."""
     kinds = sorted((place.landmark, place.other), key=lambda kind: kind == "wall")
     if kinds[0] == "wall":
         raise InputError(f"{place.words!r} is anywhere in the room; say one thing that stands there, or leave it out")
@@ -200,7 +216,7 @@ def _pairs(place: Place, scene: Scene) -> list[tuple[Float[Array, "2"], Float[Ar
 
 
 def _at(place: Place, middle: Float[Array, "2"], cells: Float[Array, "cell 2"]) -> Bool[Array, " cell"]:
-    """Which cells stand in the relation to something with its middle there, seen from the radar."""
+    """Mask of cells in the given relation to an object, seen from the radar."""
     away = middle / max(float(np.hypot(*middle)), 1e-6)
     aside = np.array([away[1], -away[0]])  # to the right in the picture
     along, across = (cells - middle) @ away, (cells - middle) @ aside
@@ -217,7 +233,7 @@ def _at(place: Place, middle: Float[Array, "2"], cells: Float[Array, "cell 2"]) 
 
 
 def _within(place: Place, cells: Float[Array, "cell 2"]) -> Bool[Array, " cell"]:
-    """Which cells are in the named part of the free floor."""
+    """Mask of cells in the named part of the free floor."""
     x, y = cells.T
     if place.relation == "range":
         return np.abs(np.hypot(x, y) - place.distance_m) < RANGE_TOLERANCE_M

@@ -1,4 +1,4 @@
-"""Geometry inferred where the camera saw only part of an object: table legs, tops behind their rims, what reaches down.
+"""Infers geometry of partly visible objects: table legs, tops behind their rims, objects that reach the floor.
 
 All points are (point, 3) in metres in the radar's frame; heights are above the floor.
 """
@@ -13,8 +13,8 @@ Points = Float[np.ndarray, "point 3"]
 _LOW_M, _EXTENDED_DOWN_M = (
     0.24,
     (0.04, 0.08, 0.12, 0.16),
-)  # what is seen lower reaches down: where points are added
-_SOLE_M = 0.035  # points lower above the floor are floor
+)  # objects below this height reach the floor; offsets of added points
+_SOLE_M = 0.035  # lower points are floor
 _TABLE_M = (0.35, 1.1)  # heights of level tops that stand on legs
 _INSET_M, _LEG_STEP_M, _TOP_THICKNESS_M, _LEG_HALF_M = (
     0.05,
@@ -22,29 +22,44 @@ _INSET_M, _LEG_STEP_M, _TOP_THICKNESS_M, _LEG_HALF_M = (
     0.04,
     0.025,
 )  # legs: from the corner, spacing, top, width
-_MIN_UNSEEN = 0.6  # a leg is possible if this share of it is occluded or outside the picture
+_MIN_UNSEEN = 0.6  # a leg is plausible if this share of it is occluded or outside the picture
 _RIM_M, _SLICE_M = (0.58, 1.05), 0.03  # heights of table tops, tested slice by slice
-_THIN_M, _LONG_M = 0.12, 0.55  # how thick a top is at most, and how long at least
-_CELL_M, _REACH_M = 0.05, 5.0  # grid in which tops and legs are looked for, and its half side
-_LEG_M, _LEG_THICK_M = (0.3, 0.55), 0.04  # a leg is seen below and above these heights, where a seat is not
-_GAP = 13  # cells: chairs in front of a table occlude its top so wide at most
-_LOW_TOPS_M, _LOW_GAP = (0.2, 0.65), 7  # heights of beds and seats, and between the rows of pixels on them, in cells
-_SEEN_BY_RIM_M, _TOP_DEPTH_M, _SPACING_M = 0.1, 0.8, 0.03  # a top so little below the camera shows only its rim
-_BEHIND_M, _BEHIND_PER_M2 = 0.065, 0.0035  # a measurement so far behind a point (noise grows with depth) passed it by
-_OCCLUDING_M = 0.15  # a measurement so far in front of a point occludes it; nearer, it may be the body itself
-_LEG_HEIGHTS_M, _TO_SIDE_M = (0.15, 0.35, 0.55, 0.75), 0.2  # where the legs of a walking person are
+_THIN_M, _LONG_M = 0.12, 0.55  # maximum thickness and minimum length of a top
+_CELL_M, _REACH_M = 0.05, 5.0  # grid for tops and legs, and its half side
+_LEG_M, _LEG_THICK_M = (0.3, 0.55), 0.04  # a leg is visible below and above these heights, a seat is not
+_GAP = 13  # cells: maximum gap in a top by chairs in front of it
+_LOW_TOPS_M, _LOW_GAP = (0.2, 0.65), 7  # heights of beds and seats; gap between pixel rows in cells
+_SEEN_BY_RIM_M, _TOP_DEPTH_M, _SPACING_M = 0.1, 0.8, 0.03  # a top at most this far below the camera shows its rim
+_BEHIND_M, _BEHIND_PER_M2 = 0.065, 0.0035  # a measurement this far behind a point rules it out; noise grows with depth
+_OCCLUDING_M = 0.15  # a measurement this far in front of a point occludes it; a nearer one may be the body itself
+_LEG_HEIGHTS_M, _TO_SIDE_M = (0.15, 0.35, 0.55, 0.75), 0.2  # sample points on the legs of a walker
 _BELOW_STEP_M, _BELOW_VOXEL_M = 0.05, 0.05
 
 
 def extended_to_floor(points: Points, floor_z_m: float) -> Float[np.ndarray, "below 3"]:
-    """Points below those that are seen low above the floor: such objects reach the floor."""
+    """Points below those measured low above the floor: such objects reach the floor.
+
+    Args:
+        points: Measured points.
+        floor_z_m: Height of the floor, metres.
+
+    Returns:
+        The added points.
+    """
     low = points[points[:, 2] < floor_z_m + _LOW_M]
     down = np.concatenate([low - np.array([0.0, 0.0, step]) for step in _EXTENDED_DOWN_M])
     return down[down[:, 2] > floor_z_m + _SOLE_M]
 
 
 def table_legs(scene: Scene) -> Points:
-    """Points of legs at the corners of level tops, except where the camera sees that there are none."""
+    """Points of legs at the corners of level tops, unless the camera sees through them.
+
+    Args:
+        scene: The room.
+
+    Returns:
+        Points (point, 3).
+    """
     legs = [
         _leg(scene, plane, u, v) for plane in scene.planes if _is_table(scene, plane) for u in (-1, 1) for v in (-1, 1)
     ]
@@ -65,7 +80,15 @@ def _leg(scene: Scene, plane: Plane, u: int, v: int) -> Points:
 
 
 def table_tops(scene: Scene, points: Points) -> Float[np.ndarray, "top 3"]:
-    """The points on table tops and rims, which are thin and long, and points of tops that their rims occlude."""
+    """Points on table tops and rims, which are thin and long, and inferred points of tops that their rims occlude.
+
+    Args:
+        scene: The room.
+        points: Measured points.
+
+    Returns:
+        Points of tops, (top, 3).
+    """
     height = points[:, 2] - scene.floor_z_m
     column, row = np.floor((points[:, :2].T + _REACH_M) / _CELL_M).astype(int)
     side = int(2 * _REACH_M / _CELL_M)
@@ -87,13 +110,13 @@ def table_tops(scene: Scene, points: Points) -> Float[np.ndarray, "top 3"]:
         between.append(np.column_stack([middle, np.full(len(middle), level + scene.floor_z_m)]))
     tops = points[near_top & is_top[cell]]
     unseen = np.concatenate([*between, *(_rectangle(scene, plane) for plane in scene.planes)])
-    # The back of a chair hides the edge behind it by a few centimetres only: all that is not seen through counts.
+    # A chair's back hides the edge behind it by a few centimetres only: all points not seen through count.
     unseen = unseen[AlignedPhoto.of(scene).look_up(unseen).in_picture & ~_seen_through(scene, unseen)]
     return np.concatenate([tops, unseen, _behind_rims(scene, tops)])
 
 
 def _rectangle(scene: Scene, plane: Plane) -> Points:
-    """Points all over the rectangle of a table's top, which chairs in front of it occlude in part."""
+    """Points over the rectangle of a table top, which chairs in front of it occlude in part."""
     height_m = float(plane.centre_m[2]) - scene.floor_z_m
     if plane.kind != "top" or not _RIM_M[0] < height_m < _RIM_M[1]:
         return np.zeros((0, 3))
@@ -102,7 +125,15 @@ def _rectangle(scene: Scene, plane: Plane) -> Points:
 
 
 def low_gap_points(scene: Scene, points: Points) -> Float[np.ndarray, "between 3"]:
-    """Points between measured ones of one level: rows of pixels are far apart on a bed that is seen at a flat angle."""
+    """Points between measured ones at one level: pixel rows are far apart on a bed seen at a grazing angle.
+
+    Args:
+        scene: The room.
+        points: Measured points of low furniture.
+
+    Returns:
+        The added points, (between, 3).
+    """
     side = int(2 * _REACH_M / _CELL_M)
     cell, inside = _cells(points, side)
     height = points[:, 2] - scene.floor_z_m
@@ -140,7 +171,7 @@ def _long_patches(cells: np.ndarray) -> np.ndarray:
 
 
 def _behind_rims(scene: Scene, tops: Points) -> Float[np.ndarray, "behind 3"]:
-    """Points behind rims at the camera's height or above, for a table's depth, where nothing farther is seen."""
+    """Points behind rims at the camera's height or above, for a table's depth, unless seen through."""
     unseen = tops[tops[:, 2] > -_SEEN_BY_RIM_M]
     _, one_each = np.unique(np.rint(unseen / _SPACING_M).astype(int), axis=0, return_index=True)
     unseen = unseen[one_each]
@@ -157,18 +188,34 @@ def _is_possible(scene: Scene, leg: Points) -> bool:
 
 
 def _seen_through(scene: Scene, points: Points) -> np.ndarray:
-    """(point,) whether something was measured behind a point, so that nothing is there."""
+    """Whether something was measured behind each point, (point,), so that the point is free."""
     seen = AlignedPhoto.of(scene).look_up(points)
     return _behind_m(scene, points) > _BEHIND_M + _BEHIND_PER_M2 * np.square(seen.depth_m)
 
 
 def occluded_share(scene: Scene, points: Float[np.ndarray, "body point 3"]) -> Float[np.ndarray, " body"]:
-    """Share of each body's points that are occluded: something was measured well in front of them."""
+    """Share of each body's points that are occluded by a measurement well in front of them.
+
+    Args:
+        scene: The room.
+        points: Points of the bodies in metres, (body, point, 3).
+
+    Returns:
+        Share 0 to 1, (body,).
+    """
     return (_behind_m(scene, points) < -_OCCLUDING_M).mean(axis=-1)
 
 
 def unseen_share(scene: Scene, points: Float[np.ndarray, "body point 3"]) -> Float[np.ndarray, " body"]:
-    """Share of each body's points that are occluded or outside the picture."""
+    """Share of each body's points that are occluded or outside the picture.
+
+    Args:
+        scene: The room.
+        points: Points of the bodies in metres, (body, point, 3).
+
+    Returns:
+        Share 0 to 1, (body,).
+    """
     outside = ~AlignedPhoto.of(scene).look_up(points).in_picture
     return ((_behind_m(scene, points) < -_OCCLUDING_M) | outside).mean(axis=-1)
 
@@ -176,7 +223,15 @@ def unseen_share(scene: Scene, points: Float[np.ndarray, "body point 3"]) -> Flo
 def occluded_along(
     scene: Scene, tracks_m: Float[np.ndarray, "track position 2"]
 ) -> Float[np.ndarray, "track position"]:
-    """Occluded share of a walking person's legs at each position (x, y) of each track."""
+    """Occluded share of a walker's legs along tracks.
+
+    Args:
+        scene: The room.
+        tracks_m: Positions (x, y) in metres, (track, position, 2).
+
+    Returns:
+        Share 0 to 1, (track, position).
+    """
     to_sides = _TO_SIDE_M * np.array([(0.0, 0.0), (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)])
     places = (tracks_m[:, :, None] + to_sides)[:, :, :, None]
     height = scene.floor_z_m + np.array(_LEG_HEIGHTS_M)
@@ -187,7 +242,15 @@ def occluded_along(
 
 
 def upright_structures(scene: Scene, points: Points) -> Float[np.ndarray, "leg 3"]:
-    """The points of upright structures, table legs mostly, and points just behind them: not a seat's cushion."""
+    """Points of upright structures, mostly table legs, and points just behind them; excludes the cushion of a seat.
+
+    Args:
+        scene: The room.
+        points: Measured points.
+
+    Returns:
+        Points (leg, 3).
+    """
     side = int(2 * _REACH_M / _CELL_M)
     low, high = np.zeros((side, side), bool), np.zeros((side, side), bool)
     height = points[:, 2] - scene.floor_z_m
@@ -207,7 +270,15 @@ def _cells(points: Points, side: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def below_tops(scene: Scene, tops: Points) -> Float[np.ndarray, "under 3"]:
-    """Points of the space below table tops, except where the camera saw through it."""
+    """Points of the space below table tops, unless the camera sees through it.
+
+    Args:
+        scene: The room.
+        tops: Points of table tops.
+
+    Returns:
+        Points (under, 3).
+    """
     _, one_each = np.unique(np.rint(tops[:, :2] / _BELOW_VOXEL_M).astype(int), axis=0, return_index=True)
     tops = tops[one_each]
     steps = np.arange(_BELOW_STEP_M, _RIM_M[1], _BELOW_STEP_M)
@@ -217,6 +288,6 @@ def below_tops(scene: Scene, tops: Points) -> Float[np.ndarray, "under 3"]:
 
 
 def _behind_m(scene: Scene, points: Float[np.ndarray, "*points 3"]) -> Float[np.ndarray, "*points"]:
-    """How far in metres behind each point something was measured, negative in front of it; nan where nothing was."""
+    """Distance in metres by which the measurement lies behind each point, negative in front; nan without one."""
     seen = AlignedPhoto.of(scene).look_up(points)
     return np.where(seen.in_picture, scene.photo.depth_m[seen.row, seen.column] - seen.depth_m, np.nan)

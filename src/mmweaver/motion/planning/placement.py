@@ -1,4 +1,4 @@
-"""Placement of a plan in the room: many start positions are tried, and their trajectories sorted by cost."""
+"""Placement of a plan in the room: many start positions are sampled, and their trajectories sorted by cost."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -27,33 +27,47 @@ from mmweaver.motion.planning.trajectory import NoTrajectory, Trajectory
 from mmweaver.motion.planning.trajectory_sampler import CandidateSampler, starts_seated
 
 Array = np.ndarray
-MAX_TRIES, TRIES, ENOUGH = 140, 28, 10  # candidates tried for the first, for all, and found, at most
-LEAVES_SEATS = 2  # the attempt that leaves the room's seats, also made where nothing can be done from any of them
-ENOUGH_SEATED = 14  # of more ways to sit, where the usual ones touch something
-_SMALL_M2, MAX_TRIES_IF_SMALL = 0.5, 40  # so little floor is soon searched
-_OCCLUDED_COST, _OCCLUDED_SITTING_COST = 4.0, 1.5  # of a trajectory, or seat, that the camera does not see
+MAX_TRIES, TRIES, ENOUGH = 140, 28, 10  # maximum candidates until the first, for all, and found
+LEAVES_SEATS = 2  # the attempt that abandons the room's seats, also made if none of them works
+ENOUGH_SEATED = 14  # found, of more ways to sit, if the usual ones touch something
+_SMALL_M2, MAX_TRIES_IF_SMALL = 0.5, 40  # a small floor is searched quickly
+_OCCLUDED_COST, _OCCLUDED_SITTING_COST = 4.0, 1.5  # cost of a trajectory, or seat, occluded from the camera
 _NUM_OCCLUSION_TESTS = 12  # along a trajectory
-_SEAT_RADIUS_M = 0.65  # within it a position counts as sitting
+_SEAT_RADIUS_M = 0.65  # radius within which a position counts as sitting
 
 
 @dataclass(frozen=True, kw_only=True)
 class Placement:
-    """The path of the root, the steps with their moves and seats, and what was assumed."""
+    """Placement of a plan in the room.
+
+    Attributes:
+        path: Path of the root.
+        steps: Steps with their moves and seat heights.
+        seats_m: Seats (x, y) in metres on which the person sits.
+        assumptions: Sentences on what was assumed.
+        invents_seat: Whether a stool was assumed although the room has a reachable seat.
+        chair: A chair assumed to be pulled out, if any.
+    """
 
     path: RootPath
     steps: tuple[PlacedStep, ...]
-    seats_m: tuple[tuple[float, float], ...]  # where the person sits
+    seats_m: tuple[tuple[float, float], ...]
     assumptions: tuple[str, ...]
-    invents_seat: bool = False  # though the room has a seat that can be reached
-    chair: PulledChair | None = None  # that is taken as pulled out
+    invents_seat: bool = False
+    chair: PulledChair | None = None
 
     @property
     def is_still(self) -> bool:
-        """Whether the body stays where it is, facing as it does: its placements differ by a rigid motion alone."""
+        """Whether the body neither moves nor turns: its placements then differ by a rigid motion only."""
         return not self.path.moves and not self.path.turns
 
     def end_state(self, plan: MotionPlan, body: SkeletonProportions) -> BodyState:
-        """Of the body after the last step of the plan that was placed."""
+        """State of the body after the last step.
+
+        Args:
+            plan: The plan that was placed.
+            body: Bone lengths.
+        """
         end_s, last = np.array([plan.duration_s]), plan.steps[-1]
         feet_m = self.path.position_m(end_s)[0]
         heading_rad = float(self.path.facing_rad(end_s)[0])
@@ -73,7 +87,7 @@ class Placement:
         )
 
     def _last_seat_height_m(self) -> float | None:
-        """Of the seat on which the body sits at the end, or from which it has just got up; None without one."""
+        """Height of the seat on which the body sits at the end, or from which it has just got up; None without one."""
         for placed in reversed(self.steps):
             if placed.step.uses_seat:
                 return placed.seat_height_m
@@ -82,38 +96,41 @@ class Placement:
         return None
 
     def seat_heights(self, step_m: float) -> tuple[int, ...]:
-        """The heights of the seats that the steps use, in multiples of a step in metres."""
+        """Heights of the seats that the steps use, in multiples of `step_m`."""
         return tuple(round(placed.seat_height_m / step_m) for placed in self.steps)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Conditions:
-    """What a placement keeps to besides its plan."""
+    """Constraints of a placement in addition to its plan."""
 
-    seed: int  # decides what the sentence leaves open
-    start_m: tuple[float, float] | None = None  # (x, y) where the person starts; None: anywhere
-    heading_rad: float | None = None  # where the body faces first, from +x towards +y
-    is_varied: bool = True  # False: people who stand face the radar, where it sees them best
+    seed: int  # determines what the sentence leaves open
+    start_m: tuple[float, float] | None = None  # start (x, y); None: anywhere
+    heading_rad: float | None = None  # initial heading, from +x towards +y
+    is_varied: bool = True  # False: standing people face the radar, where it observes them best
     others: tuple[PoseSequence, ...] = ()  # people to keep clear of
-    after: BodyState | None = None  # how the motion before ended, which this one goes on from
+    after: BodyState | None = None  # final state of the previous motion
 
 
 def place(
     plan: MotionPlan, floor: FloorMap, body: SkeletonProportions, conditions: Conditions, *, attempt: int = 0
 ) -> list[Placement]:
-    """Placements of the whole plan that are free and in view all along; the best first.
+    """Samples placements of the whole plan that are free and in view throughout.
 
     Args:
-        plan: a scheduled plan.
-        floor: where in the room a body of this height can be.
-        body: its proportions.
-        conditions: start, heading, other people.
-        attempt: 1 and 2 sample other placements, with more ways to sit: 1 leaves out some of the seats, 2 all of them
+        plan: Scheduled plan.
+        floor: Floor that a body of this height can use.
+        body: Bone lengths.
+        conditions: Start, heading, other people.
+        attempt: 1 and 2 sample other placements, with more ways to sit: 1 drops some of the seats, 2 all of them
             unless the sentence names one that the room has.
 
+    Returns:
+        Placements, the best first.
+
     Raises:
-        InputError: where the start is not free or out of view, where there is no room, or where the room lacks what a
-            step goes to.
+        InputError: If the start is not free or out of view, there is no room, or the room lacks the destination of a
+            step.
     """
     start_m, after, others = conditions.start_m, conditions.after, conditions.others
     check_targets(plan, floor.scene)
@@ -137,7 +154,7 @@ def place(
     )
     trajectories: list[Trajectory] = []
     enough = ENOUGH_SEATED if attempt and any(step.uses_seat for step in plan.steps) else ENOUGH
-    enough = MAX_TRIES if floor.is_tight else enough  # every one fits; the one that touches least is looked for
+    enough = MAX_TRIES if floor.is_tight else enough  # all of them fit: search for the one that touches least
     is_small = not floor.is_tight and len(floor.walkable_m) * floor.cell_m**2 < _SMALL_M2
     for tried in range(MAX_TRIES_IF_SMALL if is_small else MAX_TRIES):
         if len(trajectories) >= enough or (trajectories and tried >= TRIES and not floor.is_tight):
@@ -160,7 +177,7 @@ def place(
 
 
 def _open_choices(floor: FloorMap, conditions: Conditions) -> dict[str, Any]:
-    """What the sentence leaves open and the seed decides once for all candidates: where about, and facing where."""
+    """Choices that the sentence leaves open, made by the seed once for all candidates: rough position and heading."""
     cells = floor.walkable_m
     rng = stream(conditions.seed, "motion", "open choices")
     facing_rad = float(rng.normal(0, 0.35)) if rng.random() < 0.5 else float(rng.uniform(-np.pi, np.pi))
@@ -173,7 +190,7 @@ def _open_choices(floor: FloorMap, conditions: Conditions) -> dict[str, Any]:
 
 
 def _occlusion_costs(trajectories: list[Trajectory], plan: MotionPlan, floor: FloorMap) -> Float[Array, " trajectory"]:
-    """Cost of trajectories, and of seats, that the camera does not see: what stands there is not known."""
+    """Cost of trajectories, and of seats, occluded from the camera: the space there is unknown."""
     time_s = np.linspace(0.0, plan.steps[-1].end_s, _NUM_OCCLUSION_TESTS)
     tracks_m = np.array([trajectory.path().position_m(time_s) for trajectory in trajectories])
     cost = np.full(tracks_m.shape[:2], _OCCLUDED_COST)
@@ -210,7 +227,7 @@ def _no_floor(floor: FloorMap) -> str:
 
 
 def _no_room(plan: MotionPlan, floor: FloorMap, start_m: tuple[float, float] | None) -> str:
-    if any(step.route_m for step in plan.steps):  # its floor is free, or `walk_along` has said where not
+    if any(step.route_m for step in plan.steps):  # its floor is free, or `walk_along` has reported where not
         return f"{plan.duration_s:.1f} s are too short for the path; give more --seconds or --frames, or a shorter path"
     from_there = f" from {start_m[0]:g},{start_m[1]:g}" if start_m else ""
     going = [step.clause for step in plan.steps if step.moves]

@@ -9,27 +9,43 @@ from mmweaver.core.skeleton import JOINT_NAMES, PARENTS, joint
 
 Array = np.ndarray
 MIN_PELVIS_DISTANCE_M, MIN_SURFACE_DISTANCE_M = 0.5, 0.02
-CHECK_RATE_HZ = 20.0  # how often the bodies are compared: a limb at 3 m/s moves 15 cm in between
+CHECK_RATE_HZ = 20.0  # comparison rate: a limb at 3 m/s moves 15 cm in between
 SPHERES_PER_BONE = 4
-TRACK_MARGIN_M, HALF_BODY_WIDTH_M = 0.15, 0.4  # of somebody whose body is not posed yet, only the pelvis's track
+TRACK_MARGIN_M, HALF_BODY_WIDTH_M = 0.15, 0.4  # for a person who is not animated yet: only the pelvis's track is known
 _FARTHEST_REACH_M = 2.2  # bodies whose pelvises are farther apart cannot touch
 
 # Bones inside the trunk that no capsule follows: radius at the near and the far joint.
 _TRUNK_BONES_M = {"hip": (0.13, capsule_between("left_hip", "left_hip").start_radius_m), "collar": (0.12, 0.08)}
-# Added to a capsule's radius at the near and the far joint, for a row of spheres has no caps: the back of the head,
+# Added to a capsule's radius at the near and the far joint, since a row of spheres has no caps: the back of the head,
 # the shoulder's muscle, toes and palm.
 _MARGIN_M = {"head": (0.0, 0.01), "shoulder": (0.01, 0.0), "foot": (0.0, 0.025), "wrist": (0.0, 0.005)}
 _HAND_LONGER_M, _HAND_THINNER_M = 0.01, 0.01  # than its capsule: an outstretched, flat hand
 
 
 def are_separate(one: PoseSequence, other: PoseSequence) -> bool:
-    """Whether two people keep their least distances at all times."""
+    """Whether two people keep their minimum distances at all times.
+
+    Args:
+        one: Motion of one person.
+        other: Motion of the other person.
+
+    Returns:
+        True if the pelvises stay 0.5 m apart and the body surfaces 2 cm.
+    """
     pelvis_m, body_m = separations_m(one, other)
     return pelvis_m >= MIN_PELVIS_DISTANCE_M and body_m >= MIN_SURFACE_DISTANCE_M
 
 
 def separations_m(one: PoseSequence, other: PoseSequence) -> tuple[float, float]:
-    """Least distances over time in metres: of the pelvises on the floor, of the body surfaces (negative: overlap)."""
+    """Minimum distances of two people over time.
+
+    Args:
+        one: Motion of one person.
+        other: Motion of the other person.
+
+    Returns:
+        Metres between the pelvises on the floor, and between the body surfaces (negative: overlap).
+    """
     time_s = _common_times(one, other)
     first, second = (_at(pose, time_s) for pose in (one, other))
     pelvis = joint("pelvis")
@@ -43,7 +59,13 @@ def separations_m(one: PoseSequence, other: PoseSequence) -> tuple[float, float]
 
 
 def is_clear_of(track_m: Float[Array, "time 2"], time_s: Float[Array, " time"], other: PoseSequence) -> bool:
-    """Whether a trajectory on the floor stays clear of a person's pelvis and, by half a body's width, of all joints."""
+    """Whether a track on the floor stays clear of a person's pelvis and, by half a body's width, of all joints.
+
+    Args:
+        track_m: Positions (x, y) in metres, (time, 2).
+        time_s: Times (time,) in seconds.
+        other: Motion of the person.
+    """
     joints_m = _at(other, time_s)[:, :, :2]
     distance_m = np.linalg.norm(joints_m - track_m[:, None], axis=-1)
     pelvis_m = distance_m[:, joint("pelvis")].min()
@@ -72,7 +94,7 @@ def _bone_radii_m(parent: str, child: str) -> tuple[float, float]:
 
 
 def _tip_m(child: str) -> tuple[float, float] | None:
-    """How far the body reaches past its last joint, and the radius there; None where the bone ends the chain."""
+    """Extension of the body past its last joint, and the radius there; None if the bone ends the chain."""
     if part_of(child) not in ("head", "wrist"):
         return None
     tip = capsule_between(child, child)

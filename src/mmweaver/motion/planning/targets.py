@@ -1,4 +1,4 @@
-"""Walking to a landmark of the room, straight or around one corner, and what is reported where there is none."""
+"""Walking to a landmark of the room, straight or around one corner, and the error if there is none."""
 
 from collections import Counter
 from dataclasses import replace
@@ -25,17 +25,21 @@ from mmweaver.motion.planning.trajectory import (
 
 Array = np.ndarray
 SEATS = ("couch", "chair", "bench", "stool", "seat")  # handled by `seating`
-# In a sentence, one of these words stands for several kinds of landmarks.
+# Words that match several kinds of landmarks.
 ALIKE = {"table": ("table", "counter"), "desk": ("table",), "counter": ("counter", "table")}
 _FASTEST_MPS = {"jog": 3.5}  # walking: 1.6
-SHORTEST_PATH_M = 0.35  # a shorter path is no walk
-_NEAR_M = 0.45  # a walkable position so near to the approach still is at the landmark
+SHORTEST_PATH_M = 0.35  # shorter paths are not a walk
+_NEAR_M = 0.45  # a walkable position within this distance of the approach counts as at the landmark
 _NUM_CORNERS = 24  # corners tried
 _NUM_GOALS = 6  # positions tried in a place
 
 
 def kinds_of(target: str) -> tuple[str, ...]:
-    """The Landmark.kinds that a word means."""
+    """The kinds of landmarks that a word matches.
+
+    Args:
+        target: Word of the sentence, such as "desk".
+    """
     return ALIKE.get(target, (target,))
 
 
@@ -45,7 +49,15 @@ def goes_to_target(step: Step) -> bool:
 
 
 def check_targets(plan: MotionPlan, scene: Scene) -> None:
-    """Raises InputError, naming what the room has, where a step goes to something that was not found in it."""
+    """Checks that the room has the landmarks that the steps go to or face.
+
+    Args:
+        plan: Scheduled plan.
+        scene: The room.
+
+    Raises:
+        InputError: If a landmark is missing, naming those that the room has.
+    """
     for step in plan.steps:
         if step.moves and not step.place and goes_to_target(step) and not _landmarks(scene, step):
             raise InputError(
@@ -61,7 +73,15 @@ def check_targets(plan: MotionPlan, scene: Scene) -> None:
 
 
 def faced_landmarks(step: Step, scene: Scene) -> list[Landmark]:
-    """The landmarks that a step's body faces, if it faces one; seats among them."""
+    """The landmarks that a step's body faces, seats included.
+
+    Args:
+        step: The step.
+        scene: The room.
+
+    Returns:
+        Landmarks of the faced kind; empty if the step faces none or the room has none.
+    """
     if step.facing not in TARGETS:
         return []
     found = [mark for mark in scene.landmarks if mark.kind in kinds_of(step.facing)]
@@ -72,7 +92,14 @@ def faced_landmarks(step: Step, scene: Scene) -> list[Landmark]:
 
 
 def drop_targets(plan: MotionPlan) -> MotionPlan:
-    """The plan for a scene without a photo: walks to landmarks lead anywhere instead, and notes say so."""
+    """Removes landmarks from the plan for a scene without a photo; notes report it.
+
+    Args:
+        plan: Scheduled plan.
+
+    Returns:
+        The plan with open destinations, notes and lowered clause records.
+    """
     lost = [step for step in plan.steps if _goes_to_landmark(step)]
     aimed = [step for step in plan.steps if step.facing in TARGETS]
     notes = tuple(
@@ -98,7 +125,7 @@ def drop_targets(plan: MotionPlan) -> MotionPlan:
 
 
 def _lost(step: Step) -> str:
-    """What a step goes to or is at, of which there is none without a photo."""
+    """The landmark or place that a step loses without a photo."""
     return step.target if step.place is None else step.place.landmark or step.place.relation
 
 
@@ -108,7 +135,16 @@ def _goes_to_landmark(step: Step) -> bool:
 
 
 def start_for_target(step: Step, floor: FloorMap, rng: np.random.Generator) -> Float[Array, "2"] | None:
-    """A position (x, y) in metres from which a walk of the step's time ends at its target; None without a target."""
+    """Samples a start from which a walk of the step's time ends at its target.
+
+    Args:
+        step: The walk, with its time.
+        floor: Floor of the room.
+        rng: Random stream.
+
+    Returns:
+        Position (x, y) in metres, which may not be walkable; None without a target.
+    """
     marks = _goals(floor, step, rng)
     if not marks:
         return None
@@ -120,7 +156,13 @@ def start_for_target(step: Step, floor: FloorMap, rng: np.random.Generator) -> F
 def walk_to_target(trajectory: Trajectory, step: Step, *, first: bool) -> None:
     """Walks to the nearest landmark that can be reached in time, and turns to face it.
 
-    Raises NoTrajectory where there is none from here.
+    Args:
+        trajectory: Trajectory so far, which is extended.
+        step: The walk, with its time.
+        first: Whether the motion begins with this step.
+
+    Raises:
+        NoTrajectory: If none can be reached.
     """
     marks = sorted(
         _goals(trajectory.floor, step, trajectory.rng),
@@ -135,7 +177,17 @@ def walk_to_target(trajectory: Trajectory, step: Step, *, first: bool) -> None:
 
 
 def walk_along(trajectory: Trajectory, step: Step, *, first: bool) -> None:
-    """Walks a given route. Raises InputError where it is not free, NoTrajectory where the time is too short for it."""
+    """Walks a given route.
+
+    Args:
+        trajectory: Trajectory so far, which is extended.
+        step: The walk, with its route (x, y) in metres and its time.
+        first: Whether the motion begins with this step.
+
+    Raises:
+        InputError: If the route is not free.
+        NoTrajectory: If the time is too short for it.
+    """
     corners = [np.array(corner, float) for corner in step.route_m]
     if not first:
         corners = corners if distance_m(corners[0], trajectory.position_m) > 0.05 else corners[1:]
@@ -162,7 +214,7 @@ def walk_along(trajectory: Trajectory, step: Step, *, first: bool) -> None:
 
 
 def _goals(floor: FloorMap, step: Step, rng: np.random.Generator) -> list[Landmark]:
-    """The landmarks that a step may go to; for a place some positions there, facing the radar."""
+    """The landmarks that a step may go to; for a place, some positions in it that face the radar."""
     if step.place is None:
         return _landmarks(floor.scene, step)
     cells = floor.place_cells[step.place]
@@ -181,7 +233,7 @@ def _landmarks(scene: Scene, step: Step) -> list[Landmark]:
 
 
 def _standing_position_m(floor: FloorMap, mark: Landmark) -> Float[Array, "2"] | None:
-    """The landmark's approach, or the nearest walkable position (x, y) that still is at the landmark."""
+    """The landmark's approach, or the nearest walkable position (x, y) that is still at the landmark."""
     approach = np.array(mark.approach_m, dtype=float)
     if bool(floor.can_stand(approach)):
         return approach
@@ -190,7 +242,7 @@ def _standing_position_m(floor: FloorMap, mark: Landmark) -> Float[Array, "2"] |
 
 
 def _corners(trajectory: Trajectory, goal: Float[Array, "2"]) -> list[Float[Array, "2"]] | None:
-    """The goal, with one corner before it where the straight path is blocked; None where that is not enough."""
+    """The goal, with one corner before it if the straight path is blocked; None if that is not enough."""
     floor, start = trajectory.floor, trajectory.position_m
     if bool(floor.are_free_ways(start[None], goal[None])[0]):
         return [goal]
@@ -207,7 +259,7 @@ def _corners(trajectory: Trajectory, goal: Float[Array, "2"]) -> list[Float[Arra
 def _lay_legs(
     trajectory: Trajectory, step: Step, corners: list[Float[Array, "2"]], mark: Landmark, *, first: bool
 ) -> bool:
-    """Lays out the legs, their times shared out by length; False where they do not fit into the step."""
+    """Lays out the legs, with times proportional to their lengths; False if they do not fit into the step."""
     gaps = np.diff(np.stack([trajectory.position_m, *corners]), axis=0)
     lengths = np.hypot(*gaps.T)
     directions = np.arctan2(gaps[:, 1], gaps[:, 0])
@@ -237,6 +289,7 @@ def _lay_legs(
 
 
 def describe_found(scene: Scene) -> str:
+    """Lists the landmarks and seats of a room for error messages."""
     counts = Counter(mark.kind for mark in scene.landmarks)
     if scene.seats:
         counts["seat"] = len(scene.seats)

@@ -23,34 +23,42 @@ SLOWEST_MPS = {
     "hop_one_leg": 0.25,
     "walking_lunge": 0.3,
 }
-SLOWED_TO, RUN_SLOWED_TO = 0.6, 0.8  # of the preferred speed, where the way is short; below that a run is none
-RAMP_S = 0.45  # acceleration from standing to walking, and back
-RUN_RAMP_S = 0.8  # to running
+SLOWED_TO, RUN_SLOWED_TO = 0.6, 0.8  # of the preferred speed on a short path; a slower run is no run
+RAMP_S = 0.45  # acceleration from standing to walking, and deceleration
+RUN_RAMP_S = 0.8  # the same for running
 TURN_RATE_RADPS = 3.6
-TURN_OVERHEAD_S = 0.25  # of a turn on the spot, whatever its angle
-_TO_AND_FRO_WITHIN_S = (3.0, 6.5)  # "walks to and fro": there and back; for longer the free floor says how far
+TURN_OVERHEAD_S = 0.25  # fixed part of the duration of a turn on the spot
+_TO_AND_FRO_WITHIN_S = (3.0, 6.5)  # "walks to and fro" of this duration is there and back; the floor limits longer ones
 _TO_AND_FRO_ON_KNEES_WITHIN_S = (6.5, 11.0)  # the same on hands and knees
-SLOWER_TURNS = (1.5, 1.0, 0.8)  # times as long: slowly, as usual, quickly
+SLOWER_TURNS = (1.5, 1.0, 0.8)  # factor of the duration: slowly, as usual, quickly
 SHORTEST_LEG_M = 0.5
 SHORTEST_WALK_M = 0.6  # one step
-PACING_LEG_M = {"walk": 0.8, "jog": 2.0, "crawl": 0.5}  # shortest leg of going to and fro
-PACED_M = {"walk": 2.5, "jog": 4.0, "crawl": 1.5}  # the longest leg of "walks to and fro"
-CRAWLING_TURN_RADPS, TURNS_ON_KNEES_M = 1.5, 0.9  # on hands and knees: how fast, and the free floor around it
+PACING_LEG_M = {"walk": 0.8, "jog": 2.0, "crawl": 0.5}  # shortest leg of pacing
+PACED_M = {"walk": 2.5, "jog": 4.0, "crawl": 1.5}  # longest leg of "walks to and fro"
+CRAWLING_TURN_RADPS, TURNS_ON_KNEES_M = 1.5, 0.9  # on hands and knees: turn rate, and clearance for a turn
 CIRCLE_RADII_M = (0.9, 0.75, 0.6, 0.5, 0.4)
-FASTER = 1.3  # than usual, to complete a circle
+FASTER = 1.3  # maximum speed-up to complete a circle
 
 
 class NoTrajectory(Exception):  # noqa: N818 - control flow, not an error
-    """A candidate that does not work out; the message says why."""
+    """A candidate that fails; the message states the reason."""
 
 
 def signed_angle_rad(one: float, other: float) -> float:
-    """The angle in radians from one direction to another, in [-pi, pi)."""
+    """Angle from one direction to another in radians, in [-pi, pi)."""
     return float((other - one + np.pi) % (2 * np.pi) - np.pi)
 
 
 def preferred_speed_mps(step: Step, rng: np.random.Generator) -> float:
-    """A sampled walking speed in m/s for a step's gait and for 'slowly' or 'quickly'."""
+    """Samples a speed for a step's gait and for 'slowly' or 'quickly'.
+
+    Args:
+        step: The step.
+        rng: Random stream.
+
+    Returns:
+        Speed in m/s.
+    """
     if step.lower == "jog" and step.style == "jog":  # "jogs", "trots"; else "runs", "sprints"
         low, high = ((1.8, 2.1), (2.1, 2.7), (2.7, 3.2))[step.speed + 1]
     elif step.lower == "jog":
@@ -69,13 +77,42 @@ def preferred_speed_mps(step: Step, rng: np.random.Generator) -> float:
 
 
 def slowest_mps(step: Step, speed_mps: float) -> float:
-    """The speed in m/s to which a short way slows who prefers `speed_mps`; a shorter one is gone faster, then stood."""
+    """Lowest speed to which a short path slows a gait; on a shorter one, the body walks faster and then stands.
+
+    Args:
+        step: The step.
+        speed_mps: Preferred speed in m/s.
+
+    Returns:
+        Speed in m/s.
+    """
     return max(SLOWEST_MPS[step.lower], (RUN_SLOWED_TO if step.lower == "jog" else SLOWED_TO) * speed_mps)
 
 
 @dataclass
 class Trajectory:
-    """Grows as steps are laid out; `cost` adds up the reasons against it. Positions are (x, y) in the radar's frame."""
+    """A trajectory under construction, in the radar's frame.
+
+    Attributes:
+        floor: Floor of the room.
+        rng: Random stream.
+        position_m: Current position (x, y) in metres.
+        heading_rad: Current heading, from +x towards +y.
+        start_m: Start (x, y) in metres.
+        start_heading_rad: Initial heading.
+        moves: Moves of each step.
+        turns: Turns on the spot.
+        notes: Assumptions to report.
+        seat_height_m: Height of the seat of each step in metres.
+        seats_m: Seats (x, y) on which the person sits.
+        chair: Chair on which the person sits, if pulled out.
+        cost: Sum of the penalties.
+        last_direction_rad: Direction of the last move.
+        invents_seat: Whether a stool was assumed although the room has a reachable seat.
+        from_seat: Whether the body has just stood up: the seat's own edge does not block the first metre.
+        turn_rate_radps: Angular rate of turns on the spot.
+        heading_is_given: Whether the initial heading is prescribed; an undirected walk begins that way.
+    """
 
     floor: FloorMap
     rng: np.random.Generator
@@ -83,18 +120,18 @@ class Trajectory:
     heading_rad: float
     start_m: tuple[float, float] = (0.0, 0.0)
     start_heading_rad: float = 0.0
-    moves: list[list[Move]] = field(default_factory=list)  # by step
+    moves: list[list[Move]] = field(default_factory=list)
     turns: list[Turn] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
-    seat_height_m: list[float] = field(default_factory=list)  # by step
-    seats_m: list[tuple[float, float]] = field(default_factory=list)  # where the person sits
-    chair: PulledChair | None = None  # on which the person sits
+    seat_height_m: list[float] = field(default_factory=list)
+    seats_m: list[tuple[float, float]] = field(default_factory=list)
+    chair: PulledChair | None = None
     cost: float = 0.0
     last_direction_rad: float | None = None
-    invents_seat: bool = False  # though the room has a seat that can be reached
-    from_seat: bool = False  # has just stood up: the seat's own edge does not block the first metre
+    invents_seat: bool = False
+    from_seat: bool = False
     turn_rate_radps: float = TURN_RATE_RADPS
-    heading_is_given: bool = False  # the caller said where the body faces first; a walk without an aim begins that way
+    heading_is_given: bool = False
 
     def __post_init__(self) -> None:
         self.start_m = (float(self.position_m[0]), float(self.position_m[1]))
@@ -110,7 +147,12 @@ class Trajectory:
         )
 
     def free_length_m(self, direction_rad: float, wanted_m: float) -> float:
-        """How far the body can go straight from here, at most `wanted_m`."""
+        """Length of the free straight path from the current position, metres.
+
+        Args:
+            direction_rad: Direction from +x towards +y.
+            wanted_m: Maximum length in metres.
+        """
         return float(self.free_lengths_m(np.array([direction_rad]), wanted_m)[0])
 
     def free_lengths_m(self, directions_rad: Float[Array, " way"], wanted_m: float) -> Float[Array, " way"]:
@@ -120,9 +162,16 @@ class Trajectory:
         )
 
     def turn_to(self, heading_rad: float, start_s: float, *, slower: float = 1.0, most_s: float = np.inf) -> float:
-        """Turns on the spot through the smaller angle; returns how long that takes, in seconds.
+        """Turns on the spot through the smaller angle.
 
-        `slower` times as long as usual, but for that at most `most_s`.
+        Args:
+            heading_rad: New heading, from +x towards +y.
+            start_s: Start of the turn, seconds.
+            slower: Factor of the duration.
+            most_s: Maximum duration in seconds to which `slower` may extend it.
+
+        Returns:
+            Duration in seconds.
         """
         angle = signed_angle_rad(self.heading_rad, heading_rad)
         if abs(angle) < 0.02:
@@ -140,7 +189,15 @@ class Trajectory:
     def go(
         self, step: Step, direction_rad: float, length_m: float, span: tuple[float, float], ramps: tuple[float, float]
     ):
-        """Appends a straight move over a time span; the caller has made sure that it is free."""
+        """Appends a straight move; the caller ensures that it is free.
+
+        Args:
+            step: The step.
+            direction_rad: Direction from +x towards +y.
+            length_m: Length in metres.
+            span: Start and end in seconds.
+            ramps: Acceleration and deceleration time in seconds.
+        """
         move = Move(
             start_s=span[0],
             end_s=span[1],
@@ -153,7 +210,13 @@ class Trajectory:
         self.last_direction_rad = direction_rad
 
     def append(self, move: Move, places_m: Float[Array, "place 2"], extra_cost: float = 0.0) -> None:
-        """Appends a move through places (x, y), which cost as the floor there does."""
+        """Appends a move and its cost.
+
+        Args:
+            move: The move.
+            places_m: Positions (x, y) on it in metres, whose floor cost is averaged.
+            extra_cost: Additional cost.
+        """
         self.moves[-1].append(move)
         self.position_m = self.position_m + move.end_shift_m
         self.cost += float(self.floor.cost_at(places_m).mean()) + extra_cost
@@ -161,7 +224,18 @@ class Trajectory:
 
 
 def face_along(trajectory: Trajectory, step: Step, direction_rad: float, start_s: float, *, first: bool) -> float:
-    """Turns the body along the direction (against it when going backwards); returns when the first stride can begin."""
+    """Turns the body along a direction (against it when going backwards).
+
+    Args:
+        trajectory: Trajectory so far, which is extended.
+        step: The step.
+        direction_rad: Direction of motion, from +x towards +y.
+        start_s: Start of the turn, seconds.
+        first: Whether the motion begins here, so that no turn is needed.
+
+    Returns:
+        Time in seconds at which the first stride can begin.
+    """
     heading = direction_rad + np.pi if step.direction == Way.BACKWARDS else direction_rad
     if first:
         trajectory.start_heading_rad = trajectory.heading_rad = heading
@@ -170,13 +244,21 @@ def face_along(trajectory: Trajectory, step: Step, direction_rad: float, start_s
 
 
 def walk_straight(trajectory: Trajectory, step: Step, direction_rad: float, *, first: bool, last: bool) -> None:
-    """Goes in a given direction for the step's time; where the room is too short, slower or not as far.
+    """Walks in a given direction for the step's time; slower or less far if the room is too short.
 
-    Raises NoTrajectory where even half a metre per second is too fast and there is hardly a step to go.
+    Args:
+        trajectory: Trajectory so far, which is extended.
+        step: The step.
+        direction_rad: Direction from +x towards +y.
+        first: Whether the motion begins with this step.
+        last: Whether the motion ends with this step.
+
+    Raises:
+        NoTrajectory: If there is less than about one step of free floor.
     """
     begin = face_along(trajectory, step, direction_rad, step.start_s, first=first)
     end = _stop_s(step, begin)
-    goes_on = step.lower not in HOPPING  # who hops begins and ends on the spot
+    goes_on = step.lower not in HOPPING  # hopping begins and ends on the spot
     last = last and end >= step.end_s - 1e-9 and goes_on
     ramps = ramps_of(end - begin, first=first and goes_on, last=last, ramp_s=_ramp_s(step))
     effective = end - begin - sum(ramps) / 2
@@ -208,7 +290,7 @@ def _say_stopped(trajectory: Trajectory, step: Step, gone_m: float) -> None:
 
 
 def _stop_s(step: Step, begin: float) -> float:
-    """When the last of a counted number of paces is done, else the end of the step, in seconds."""
+    """Time at which a counted number of paces is done, else the end of the step, in seconds."""
     if not step.count or step.upper:
         return step.end_s
     each = 0.38 if step.lower == "jog" else (0.72, 0.58, 0.5)[step.speed + 1]
@@ -221,7 +303,17 @@ def _ramp_s(step: Step) -> float:
 
 
 def ramps_of(span_s: float, *, first: bool, last: bool, ramp_s: float = RAMP_S) -> tuple[float, float]:
-    """Seconds of acceleration and deceleration; none where the motion is under way already, or goes on."""
+    """Acceleration and deceleration times in seconds; 0 if the motion is already under way, or continues.
+
+    Args:
+        span_s: Duration of the move in seconds.
+        first: Whether the motion begins with this move, under way.
+        last: Whether the motion ends with this move, under way.
+        ramp_s: Usual ramp in seconds.
+
+    Raises:
+        NoTrajectory: If the move is shorter than 0.45 s.
+    """
     if span_s < 0.45:
         raise NoTrajectory("no time left to walk after turning")
     ramp = min(ramp_s, 0.42 * span_s)
@@ -229,7 +321,17 @@ def ramps_of(span_s: float, *, first: bool, last: bool, ramp_s: float = RAMP_S) 
 
 
 def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool) -> None:
-    """Without a given direction: goes straight as long as there is room, then turns and goes on, to and fro."""
+    """Walks without a given direction: straight as long as there is room, then turns and continues, to and fro.
+
+    Args:
+        trajectory: Trajectory so far, which is extended.
+        step: The step.
+        first: Whether the motion begins with this step.
+        last: Whether the motion ends with this step.
+
+    Raises:
+        NoTrajectory: If there is too little room or time.
+    """
     speed = preferred_speed_mps(step, trajectory.rng)
     runs, slowest = step.lower == "jog", SLOWEST_MPS[step.lower]
     time, begun, ramp_s = step.start_s, first, _ramp_s(step)
@@ -265,9 +367,9 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
         ramps = (0.0 if begun else ramp_s, ramp_s)
         lasts = free / speed + sum(ramps) / 2
         stops = left - lasts < 1.3
-        if stops and runs:  # who runs is not slowed down, but stands still for the rest
+        if stops and runs:  # a run is not slowed down; the body stands still for the rest
             lasts = min(lasts, left)
-        elif stops:  # leave time enough to turn and go back, or take the whole time for this one
+        elif stops:  # leave enough time to turn and go back, or use all of it for this leg
             lasts = left if free >= slowest * (left - sum(ramps) / 2) else left - 1.3
         length = min(free, speed * (lasts - sum(ramps) / 2))
         if lasts < 0.8 or length < SHORTEST_LEG_M:
@@ -285,7 +387,7 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
 
 
 def _pacing_m(step: Step, speed_mps: float) -> float:
-    """How far who walks to and fro goes before turning back, in metres; 0 where no time or no word asks for that."""
+    """Length in metres of a leg of pacing; 0 if time or sentence do not ask for it."""
     lasts_s, crawls = step.end_s - step.start_s, step.lower == "crawl"
     least_s, most_s = _TO_AND_FRO_ON_KNEES_WITHIN_S if crawls else _TO_AND_FRO_WITHIN_S
     if step.direction != Shape.PACING or not least_s < lasts_s < most_s:
@@ -295,7 +397,7 @@ def _pacing_m(step: Step, speed_mps: float) -> float:
 
 
 def _there_and_back_m(trajectory: Trajectory, step: Step, direction_rad: float, free_m: float, paced_m: float) -> float:
-    """How far who goes to and fro goes at most; who crawls needs room to turn there, else goes one way: 0."""
+    """Maximum length of a leg of pacing; a crawling body that cannot turn there goes one way: 0."""
     if step.lower != "crawl" or not paced_m:
         return paced_m
     roomy_m = _knee_turn_reach_m(trajectory, direction_rad, min(free_m, paced_m))
@@ -306,7 +408,7 @@ def _there_and_back_m(trajectory: Trajectory, step: Step, direction_rad: float, 
 
 
 def _knee_turn_reach_m(trajectory: Trajectory, direction_rad: float, free_m: float) -> float:
-    """How far a crawling body goes before it turns: to the last place with room for that, 0 without one."""
+    """Distance to the last position at which a crawling body has room to turn; 0 without one."""
     gone_m = np.arange(PACING_LEG_M["crawl"], free_m, 0.05)
     places = trajectory.position_m + gone_m[:, None] * unit_vector(direction_rad)
     roomy = gone_m[trajectory.floor.clearance_at(places) > TURNS_ON_KNEES_M] if len(gone_m) else gone_m
@@ -314,7 +416,7 @@ def _knee_turn_reach_m(trajectory: Trajectory, direction_rad: float, free_m: flo
 
 
 def _open_direction(trajectory: Trajectory, wanted_m: float, *, keep_heading: bool) -> tuple[float, float]:
-    """A direction with room and its free length, at random among the better ones; straight on where possible."""
+    """A direction with room and its free length, sampled among the better ones; straight on if possible."""
     wanted_m = min(wanted_m, 5.0)
     if keep_heading:
         free = trajectory.free_length_m(trajectory.heading_rad, wanted_m)
@@ -327,13 +429,23 @@ def _open_direction(trajectory: Trajectory, wanted_m: float, *, keep_heading: bo
 
 
 def walk_circle(trajectory: Trajectory, step: Step, *, first: bool, last: bool) -> None:
-    """Walks in a circle, as wide as time and room allow: whole rounds, and at least one where there is time for it."""
+    """Walks in a circle as wide as time and room allow: whole rounds, and at least one if time permits.
+
+    Args:
+        trajectory: Trajectory so far, which is extended.
+        step: The step.
+        first: Whether the motion begins with this step.
+        last: Whether the motion ends with this step.
+
+    Raises:
+        NoTrajectory: If there is no room for the narrowest circle of 0.4 m.
+    """
     rng = trajectory.rng
     side = float(np.sign(step.arc_deg)) if step.arc_deg and not step.either_side else random_sign(rng)
     chosen = first and not trajectory.heading_is_given
     direction = float(rng.uniform(0, 2 * np.pi)) if chosen else trajectory.heading_rad
     begin = face_along(trajectory, step, direction, step.start_s, first=first)
-    goes_on = step.lower not in HOPPING  # who hops begins and ends on the spot
+    goes_on = step.lower not in HOPPING  # hopping begins and ends on the spot
     ramps = ramps_of(step.end_s - begin, first=first and goes_on, last=last and goes_on)
     speed = min(preferred_speed_mps(step, rng), 1.6 if step.lower == "jog" else 1.1)
     within_m = speed * (step.end_s - begin - sum(ramps) / 2)
@@ -343,7 +455,7 @@ def walk_circle(trajectory: Trajectory, step: Step, *, first: bool, last: bool) 
         if length > FASTER * within_m:
             if radius > narrowest_m:
                 continue
-            length = within_m  # there is time for a part of it
+            length = within_m  # time suffices for a part of it only
         move = Move(
             start_s=begin,
             end_s=step.end_s,
@@ -366,7 +478,7 @@ def walk_circle(trajectory: Trajectory, step: Step, *, first: bool, last: bool) 
 
 
 def _say_slower(trajectory: Trajectory, step: Step, radius_m: float, speed_mps: float) -> None:
-    """Says that a circle is run more slowly than anybody runs elsewhere."""
+    """Notes a circle that is run more slowly than running elsewhere."""
     least_mps = 1.8 if step.style == "jog" else 2.1  # of `preferred_speed_mps`
     if step.lower == "jog" and speed_mps < least_mps * step.pace - 0.05:
         trajectory.notes.append(
@@ -375,7 +487,7 @@ def _say_slower(trajectory: Trajectory, step: Step, radius_m: float, speed_mps: 
 
 
 def _rounds(step: Step, usual: float) -> float:
-    """How often it goes round: as often as the sentence says, else whole rounds at about the usual speed."""
+    """Number of rounds: as stated, else whole rounds at about the usual speed."""
     if step.count:
         return usual  # the paces are counted
     asked = abs(step.arc_deg) / 360

@@ -67,21 +67,21 @@ from mmweaver.motion.planning.trajectory import (
 Array = np.ndarray
 FAVOURITE_COST_PER_M = 0.7
 _SAME_PLACE_M = 0.1
-_SAME_SEAT_M = 0.6  # places to sit so near belong to one seat
-_KNOWN_WAYS = 0.5  # share of the tries, where the usual ways to sit collide, on which the known ones are taken
-_PULLED, _PULLED_M, _PULLED_TURN_RAD = 0.4, (0.08, 0.45), 0.5  # how often chairs are tried pulled out, how far
+_SAME_SEAT_M = 0.6  # places to sit within this distance belong to one seat
+_KNOWN_WAYS = 0.5  # share of the tries that use known ways to sit, if the usual ones collide
+_PULLED, _PULLED_M, _PULLED_TURN_RAD = 0.4, (0.08, 0.45), 0.5  # of pulled-out chairs: probability, distance, turn
 _STRAIGHT = (*Side, Way.TOWARDS, Way.AWAY, None)
 _DEFAULT_MPS = {"walk": 1.15, "jog": 2.8, "limp": 0.75, "stagger": 0.75, "crawl": 0.35, "walking_lunge": 0.5}
-_OF_USUAL = 0.7  # a walk has room where it can go so much of its usual length
-_RUN_OF_USUAL = 1.0  # a run, which is not slowed down as far as a walk
-_LONGEST_SHARE = 0.2  # of the starts, those with most room, where none has enough
-_NEAR_MIDDLE_M = 0.3  # from where on a couch somebody sits down to lie in its middle
-_SEAT_WAYS = 4  # ways to seats for which a start of the walk is looked for
+_OF_USUAL = 0.7  # share of its usual length for which a walk needs room
+_RUN_OF_USUAL = 1.0  # the same for a run, which is slowed down less
+_LONGEST_SHARE = 0.2  # share of the starts with most room, used if none has enough
+_NEAR_MIDDLE_M = 0.3  # from the place on a couch to sit down on, to lie in its middle
+_SEAT_WAYS = 4  # approaches for which a start of the walk is searched
 _FALLS_OFF_STOOL = (
     0.5  # share of the falls tried from a stool: before a seat of the room there may be no floor for them
 )
-_NEAR_START_M = 1.0  # a seat so near to the requested start is the one meant
-_AT_START_M = 0.3  # the same where a heading is requested, too
+_NEAR_START_M = 1.0  # a seat within this distance of the requested start is meant
+_AT_START_M = 0.3  # the same if a heading is also requested
 _FACES_AS_ASKED_RAD = 0.35
 _SEAT_AT_PLACE_M = 0.7  # from the free floor of a place
 
@@ -98,7 +98,20 @@ def lies_on_seat(plan: MotionPlan) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class CandidateSampler:
-    """Samples candidates for a plan on a floor; see `placement.place` for `start_m` and `attempt`."""
+    """Samples candidates for a plan on a floor.
+
+    Attributes:
+        plan: Scheduled plan.
+        floor: Floor of the room.
+        body: Bone lengths.
+        rng: Random stream of the candidates.
+        start_m: Prescribed start (x, y) in metres, or None.
+        attempt: Number of the attempt, see `placement.place`.
+        heading_rad: Prescribed initial heading, from +x towards +y, or None.
+        off_radar_rad: Sampled angle of a standing body off the radar; None faces it.
+        favourite_m: Sampled position (x, y) near which a start costs least; None for none.
+        after: Final state of the previous motion, if any.
+    """
 
     plan: MotionPlan
     floor: FloorMap
@@ -106,13 +119,17 @@ class CandidateSampler:
     rng: np.random.Generator
     start_m: tuple[float, float] | None
     attempt: int
-    heading_rad: float | None = None  # given: where the body faces first
-    off_radar_rad: float | None = None  # drawn: how far a standing body turns from the radar
-    favourite_m: Float[Array, "2"] | None = None  # drawn: near it a start costs least
-    after: BodyState | None = None  # how the motion before ended, where there was one
+    heading_rad: float | None = None
+    off_radar_rad: float | None = None
+    favourite_m: Float[Array, "2"] | None = None
+    after: BodyState | None = None
 
     def sample(self) -> Trajectory:
-        """One candidate: a start, and every step laid out from there. Raises NoTrajectory."""
+        """Samples one candidate: a start, and every step laid out from there.
+
+        Raises:
+            NoTrajectory: If the candidate fails.
+        """
         seats = self._seats()
         trajectory, sitting = self._start(seats)
         for k, step in enumerate(self.plan.steps):
@@ -155,7 +172,7 @@ class CandidateSampler:
         return trajectory
 
     def _is_down_there(self, number: int) -> bool:
-        """Whether the body lies or kneels, in a step or until it rises in it, as the motion before left it."""
+        """Whether the body still lies or kneels as the previous motion left it, or rises from there in this step."""
         down = "" if self.after is None or self.after.posture not in ("floor", "knees") else self.after.posture
         before, step = self.plan.steps[:number], self.plan.steps[number]
         stayed = bool(down) and all(one.posture == down for one in before)
@@ -180,7 +197,7 @@ class CandidateSampler:
         return [self._pulled(seat) or any_variation(seat, self.rng) for seat in subset]
 
     def _pulled(self, seat: Sitting) -> Sitting | None:
-        """Often the same chair pulled out, where there is room for that."""
+        """The same chair pulled out, with some probability and if there is room."""
         if self.rng.random() > _PULLED:
             return None
         pulled = pulled_out(seat, self.floor, float(self.rng.uniform(*_PULLED_M)))
@@ -188,7 +205,7 @@ class CandidateSampler:
 
     @cached_property
     def _approaches(self) -> list[Approach]:
-        """Ways to walk up to the room's seats; to those that can be lain on where the person lies."""
+        """Approaches to the room's seats; only to those fit to lie on if the person lies."""
         ways = approaches(self.floor, self.body)
         if not lies_on_seat(self.plan):
             return ways
@@ -196,12 +213,12 @@ class CandidateSampler:
         return [way for way in ways if any(distance_m(way.sitting.seat_m, at) < _NEAR_MIDDLE_M for at in middles_m)]
 
     def _ways_of(self, seat: str) -> list[Approach]:
-        """The ways to the seats of a word, in random order."""
+        """Approaches to the seats that match a word, in random order."""
         ways = fitting_approaches(self._approaches, seat, self.floor.scene)
         return [ways[k] for k in self.rng.permutation(len(ways))]
 
     def _seat_ahead(self, trajectory: Trajectory, step: Step, following: Step | None) -> Approach | None:
-        """How a walk ends at a seat; None where it does not, or no way fits."""
+        """The approach by which a walk ends at a seat; None if it does not, or no approach fits."""
         sits_down = following is not None and following.lower == "sit_down"
         if not sits_down and step.direction != Way.SEAT:
             return None
@@ -210,7 +227,7 @@ class CandidateSampler:
         return approach_from(trajectory, step, ways, _direction_rad(trajectory, step))
 
     def _start(self, seats: list[Sitting]) -> tuple[Trajectory, Sitting | None]:
-        """The start of the trajectory, and how the person sits there, if so."""
+        """The start of the trajectory, and how the person sits there, if at all."""
         first = self.plan.steps[0]
         if self.after is not None:
             spot = np.array(self.after.position_m)
@@ -248,20 +265,20 @@ class CandidateSampler:
         return Trajectory(floor=self.floor, rng=self.rng, position_m=position_m, heading_rad=heading_rad, **more)
 
     def _sittings_known_to_fit(self, seats: list[Sitting]) -> list[Sitting]:
-        """The ways to sit on these seats that are known to keep the body clear; the seats where there are none."""
+        """Known collision-free ways to sit on these seats; the seats themselves if there are none."""
         ways = [way.sitting for way in self._approaches]
         near = [one for one in ways if any(distance_m(one.seat_m, seat.seat_m) < _SAME_SEAT_M for seat in seats)]
         return near or seats
 
     def _seat_behind(self, trajectory: Trajectory, seats: list[Sitting]) -> Sitting | None:
-        """The seat in front of which the body stands: of the motion before, or of the room."""
+        """The seat in front of which the body stands: of the previous motion, or of the room."""
         before = [] if self.after is None or self.after.sitting is None else [self.after.sitting]
         known = before + seats + ([way.sitting for way in self._approaches] if seats else [])
         near = (seat for seat in known if distance_m(seat.feet_m, trajectory.position_m) < _SAME_PLACE_M)
         return next(near, None)
 
     def _seat_to_start_at(self, seats: list[Sitting]) -> Sitting | None:
-        """For somebody who sits down without having walked: a seat to stand in front of from the start."""
+        """The seat to stand in front of at the start, for a person who sits down without walking first."""
         steps = self.plan.steps
         down = next((k for k, step in enumerate(steps) if step.lower == "sit_down"), 0)
         if not down or self.start_m is not None or any(_changes_place(step) for step in steps[:down]):
@@ -272,7 +289,7 @@ class CandidateSampler:
         return random_choice(free, self.rng) if free else None
 
     def _random_start(self, seats: list[Sitting]) -> Float[Array, "2"]:
-        """A random position (x, y) in metres; for a walk to a seat often one from which it ends there."""
+        """Samples a position (x, y) in metres; for a walk to a seat often one from which it ends there."""
         first = self.plan.steps[0]
         route_m = next((step.route_m for step in self.plan.steps if step.route_m), ())
         if route_m:
@@ -294,7 +311,7 @@ class CandidateSampler:
         return spot + self.rng.uniform(-0.3, 0.3, 2) * self.floor.cell_m
 
     def _open_starts(self, step: Step) -> Float[Array, "cell 2"]:
-        """Places to start at: for a straight walk those from which it has room, else those with most of it."""
+        """Places to start at: for a straight walk those with enough room, else those with the most."""
         if not step.moves or step.lower not in _DEFAULT_MPS or step.arc_deg or step.direction not in _STRAIGHT:
             return self.floor.walkable_m
         if id(step) not in self._roomy_starts:
@@ -306,7 +323,7 @@ class CandidateSampler:
 
     @cached_property
     def _roomy_starts(self) -> dict[int, Float[Array, "cell 2"]]:
-        """`_open_starts` of the plan's steps, which are many times asked for."""
+        """`_open_starts` of the plan's steps, cached."""
         return {}
 
     def _start_of_walk_to_seat(self, step: Step) -> Float[Array, "2"] | None:
@@ -337,7 +354,7 @@ class CandidateSampler:
             facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(self.rng.normal(0, 0.3), -0.6, 0.6))
             facing = facing if self.heading_rad is None else self.heading_rad
             sitting = stool_at(spot, facing, self.body)
-            if self.heading_rad is not None and first.lower != "sit_down":  # who sits already has the hips there
+            if self.heading_rad is not None and first.lower != "sit_down":  # a sitter's hips are there already
                 sitting = stool_at(2 * spot - sitting.seat_m, facing, self.body)
             if not stool_fits(sitting, self.floor, is_bed=lies_on_seat(self.plan)):
                 raise NoTrajectory("no room for a stool")
@@ -347,9 +364,9 @@ class CandidateSampler:
         return self._trajectory(sitting.feet_m, sitting.facing_rad, cost=cost, notes=notes), sitting
 
     def _is_meant(self, seat: Sitting, *, named: bool) -> bool:
-        """Whether who sits at the start may take the seat: near the requested start, and facing as requested.
+        """Whether a person seated at the start may take the seat: near the requested start, with the requested heading.
 
-        A seat that the sentence names is taken whatever it faces.
+        A seat that the sentence names may have any heading.
         """
         strict = self.heading_rad is not None and not named
         within_m = _AT_START_M if strict else _NEAR_START_M
@@ -359,12 +376,12 @@ class CandidateSampler:
 
 
 def _turns_the_body(step: Step) -> bool:
-    """Whether the body faces where the step says; an arm that points aside and a look leave the body as it is."""
+    """Whether the body turns to the step's facing; pointing aside and looking leave it unchanged."""
     return step.upper not in ("point", "look_around") or step.facing not in ("left", "right", "down")
 
 
 def _changes_place(step: Step) -> bool:
-    """Whether a step leads away from a place, or turns the body there, or needs the floor or a posture of its own."""
+    """Whether a step leaves the position, turns the body, or needs floor or a posture of its own."""
     return step.moves or step.posture != "feet" or step.lower == "turn" or bool(step.facing) or step.place is not None
 
 
@@ -373,7 +390,7 @@ def _lay_move(trajectory: Trajectory, step: Step, target: Approach | None, *, fi
     if step.route_m:
         walk_along(trajectory, step, first=first)
         return
-    # who faces where the caller said turns before walking elsewhere, and is not under way at once
+    # With a prescribed heading the body turns first, so that it is not under way at the start.
     has_target = target is not None or goes_to_target(step)
     direction = None if has_target else _direction_rad(trajectory, step)
     is_aimed = has_target or direction is not None
@@ -451,7 +468,7 @@ def _lay_turn(trajectory: Trajectory, step: Step, *, first: bool) -> None:
 
 
 def _stool_at_end(trajectory: Trajectory, body: SkeletonProportions, *, previous: Step, is_bed: bool) -> Sitting:
-    """A stool (or bed) at the end of a walk, a quarter turn away at most, or behind somebody who stands."""
+    """A stool (or bed) at the end of a walk, at most a quarter turn away, or behind a standing person."""
     to_radar = float(np.arctan2(-trajectory.position_m[1], -trajectory.position_m[0]))
     options = (
         [trajectory.heading_rad]

@@ -1,1 +1,1 @@
-"""What a person can do where: seats, landmarks, free floor."""
+"""Places for people: seats, landmarks, free floor."""

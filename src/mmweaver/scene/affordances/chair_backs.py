@@ -1,6 +1,6 @@
-"""Chairs of which nothing is seen but the back, above the far edge of a table.
+"""Chairs of which only the back is visible, above the far edge of a table.
 
-Places are (row, column) of the map, in squares, as are directions.
+Positions are (row, column) of the height map, in squares, as are directions.
 """
 
 import numpy as np
@@ -14,10 +14,10 @@ from mmweaver.scene.layout.height_map import CELL_M, HeightMap
 
 _BACK_TOP_M, _LONG_M, _THICK_M = (0.78, 1.05), (0.3, 0.62), 0.22  # as seen: squares are 5 cm
 _LEVEL_M, _MIN_SQUARES = 0.05, 7  # between the quartiles of a back's height: plants and laptops slope
-_AHEAD_M, _NEAR_M = (0.4, 0.8), (0.05, 0.3)  # where a table is, and where none is: a laptop stands on one
-_MIN_AHEAD, _MAX_ELSEWHERE = 0.3, 0.05  # shares of table there
-_TO_SEAT_M, _SEAT_HEIGHT_M, _SEAT_SIZE_M = 0.18, 0.45, (0.42, 0.4)  # of usual chairs, as nothing of the seat is seen
-_APART_M = 0.45  # from seats that are found
+_AHEAD_M, _NEAR_M = (0.4, 0.8), (0.05, 0.3)  # ranges with a table, and without: a laptop stands on one
+_MIN_AHEAD, _MAX_ELSEWHERE = 0.3, 0.05  # share of table squares in these two ranges
+_TO_SEAT_M, _SEAT_HEIGHT_M, _SEAT_SIZE_M = 0.18, 0.45, (0.42, 0.4)  # of a usual chair: the seat itself is occluded
+_APART_M = 0.45  # from seats already found
 
 Place = Float[Array, "2"]
 
@@ -25,7 +25,17 @@ Place = Float[Array, "2"]
 def chairs_behind_tables(
     height_map: HeightMap, tables: GridMask, seats: tuple[Seat, ...], evidence: GridClass | None
 ) -> tuple[Seat, ...]:
-    """Seats assumed before backs: level strips as wide as a chair, with a table ahead and none behind."""
+    """Seats inferred in front of chair backs: level strips as wide as a chair, with a table ahead and none behind.
+
+    Args:
+        height_map: The room from above.
+        tables: Squares of table tops, (y, x).
+        seats: Seats already found; backs within 0.45 m of one are skipped.
+        evidence: Class evidence for seats, (y, x), see `class_evidence.seat_evidence`; None without a class mask.
+
+    Returns:
+        Seats of usual height and size (0.45 m high, 0.42 x 0.4 m), since the seat itself is occluded.
+    """
     is_back = (height_map.top_m > _BACK_TOP_M[0]) & (height_map.top_m < _BACK_TOP_M[1]) & ~tables
     if evidence is not None:
         is_back &= evidence >= 0
@@ -61,7 +71,7 @@ def _seat_of_back(height_map: HeightMap, back: GridMask, tables: GridMask) -> Se
 
 
 def _share_of_table(tables: GridMask, middle: Place, ahead: Place, reach_m: tuple[float, float]) -> float:
-    """Of the squares ahead of the middle of a strip, between two distances."""
+    """Share of table squares ahead of the middle of a strip, between two distances."""
     aside = np.array([-ahead[1], ahead[0]])
     steps = np.arange(*reach_m, CELL_M)[:, None, None] * ahead + np.array([[-0.1], [0.0], [0.1]]) * aside
     row, column = np.round(middle + steps.reshape(-1, 2) / CELL_M).astype(int).T

@@ -23,6 +23,12 @@ def find_free_space(height_map: HeightMap) -> FreeSpace:
     Not free are places behind walls, outside the picture's width, within half a metre of the radar, and behind the
     edge of a table at the camera's height or above it: seen edge-on or from below, a table occludes its own top while
     the floor below it is visible.
+
+    Args:
+        height_map: The room from above.
+
+    Returns:
+        The free squares on the height map's grid, and those of them that were measured.
     """
     distance_m = np.hypot(height_map.x_m[None, :], height_map.y_m[:, None])
     is_open = height_map.is_floor_seen | height_map.is_seen_through | height_map.is_below_picture
@@ -36,7 +42,15 @@ def find_free_space(height_map: HeightMap) -> FreeSpace:
 
 
 def hidden_by_tables(height_map: HeightMap) -> GridMask:
-    """Squares up to a table's depth behind edges at the camera's own height, and behind tables' rims above it."""
+    """Squares occluded by a table that is seen edge-on or from below.
+
+    Args:
+        height_map: The room from above.
+
+    Returns:
+        Mask (y, x): squares up to 0.85 m, the depth of a table, behind the edges of surfaces at the camera's own height
+        and behind the rims of tables above it.
+    """
     above_camera_m = np.nan_to_num(height_map.top_m, nan=-9.0) + height_map.floor_z_m
     is_table = (height_map.top_m > _TABLE_HEIGHTS_M[0]) & (height_map.top_m < _TABLE_HEIGHTS_M[1])
     is_edge_on = np.abs(above_camera_m) < _EDGE_ON_M
@@ -65,8 +79,8 @@ def _is_rim(height_map: HeightMap, squares: GridMask) -> GridMask:
     return is_rim
 
 
-_UPPER_BODY_M = (1.2, 1.35, 1.5)  # heights above the floor at which somebody behind a table is seen
-_BODY_M = 0.25  # from the centre of a standing body to what is next to it
+_UPPER_BODY_M = (1.2, 1.35, 1.5)  # heights above the floor at which a body behind a table is visible
+_BODY_M = 0.25  # from the centre of a standing body to adjacent objects
 _BODY_HEIGHTS_M = (0.1, 1.9)
 _BEARINGS = 180  # of two degrees each
 
@@ -74,11 +88,20 @@ _BEARINGS = 180  # of two degrees each
 def find_assumed_floor(
     height_map: HeightMap, view: AlignedPhoto, walls: Sequence[Plane], is_free: GridMask
 ) -> GridMask:
-    """Squares, none of them in `is_free`, on which nothing was measured and a body could be seen at least in part.
+    """Unmeasured squares on which a body would be visible at least in part.
 
-    A square counts if it lies in front of all walls, nearer than the farthest thing in its direction, and a line of
-    sight passes above it at the height of a chest; or if it is nearer than anything measured in its direction. The
-    depth of a table behind its edge is table.
+    A square counts if it lies in front of all walls, nearer than the farthest measurement at its bearing, and a line of
+    sight passes above it at chest height; or if it is nearer than any measurement at its bearing. The depth of a table
+    behind its edge counts as table.
+
+    Args:
+        height_map: The room from above.
+        view: The photo in the radar's frame.
+        walls: Walls of the room, normals towards the room.
+        is_free: Squares already known to be free, (y, x).
+
+    Returns:
+        Mask (y, x), disjoint from `is_free`.
     """
     x_m, y_m = height_map.x_m, height_map.y_m
     distance_m = np.hypot(x_m[None, :], y_m[:, None])

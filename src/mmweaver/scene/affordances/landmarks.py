@@ -1,4 +1,4 @@
-"""Landmarks: tables, counters, beds, doors and windows, which a sentence may name as a place to go to."""
+"""Landmarks: tables, counters, beds, doors and windows, which a sentence may name as a destination."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -32,10 +32,20 @@ def find_landmarks(
     free_space: FreeSpace,
     seats: tuple[Seat, ...],
 ) -> tuple[Landmark, ...]:
-    """Finds landmarks, the nearest of each kind first: by the photo's class mask, or from depth where it has none.
+    """Finds landmarks from the photo's class mask, or from depth where there is no mask.
 
     From depth: horizontal surfaces without a seat that are at table height and hollow below, at counter height, or as
     large as a bed; and parts of walls with the size of a door or window and another colour or no surface.
+
+    Args:
+        view: The photo in the radar's frame.
+        planes: Planes of the room, the walls among them.
+        height_map: The room from above.
+        free_space: Floor on which a body may stand.
+        seats: Seats of the room; their surfaces are no tables.
+
+    Returns:
+        Landmarks sorted by kind, then by distance, each with the place to stand and the direction to face.
     """
     if view.photo.classes is not None:
         candidates = _class_candidates(view, planes)
@@ -46,9 +56,17 @@ def find_landmarks(
 
 
 def add_landmarks(scene: Scene, given: Sequence[tuple[str, tuple[float, float]]]) -> Scene:
-    """The scene with landmarks (kind, (x, y) in metres) given by the user; they replace those found of their kinds.
+    """Adds landmarks given by the user; they replace the detected ones of the same kinds.
 
-    Raises InputError for a kind that no sentence knows, and for a place behind or far from the radar.
+    Args:
+        scene: The room.
+        given: Kind and position (x, y) in metres of each, in the radar's frame.
+
+    Returns:
+        The scene with these landmarks and an assumption that names each.
+
+    Raises:
+        InputError: If a kind is not one that sentences may name, or a position is behind the radar or beyond 10 m.
     """
     added = []
     for kind, (x, y) in given:
@@ -187,7 +205,7 @@ def _find_approach(candidate: LandmarkCandidate, free_space: FreeSpace) -> Landm
     if len(places_m):
         some = candidate.squares_m[:: max(1, len(candidate.squares_m) // 200)]
         gap_m = np.min(np.hypot(*(places_m[:, None] - some[None]).transpose(2, 0, 1)), axis=1)
-        # Among nearly equal places prefer the one in front of the landmark's middle.
+        # Of nearly equal places, prefer the one in front of the landmark's middle.
         best = int(np.argmin(gap_m + 0.25 * np.hypot(*(places_m - middle).T)))
         if gap_m[best] < _MAX_REACH_M:
             approach_m = places_m[best]

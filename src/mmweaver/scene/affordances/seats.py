@@ -1,4 +1,4 @@
-"""Where a person could sit: horizontal surfaces at seat height, with a backrest behind and room for legs in front."""
+"""Finds seats: horizontal surfaces at seat height, with a backrest behind and room for legs in front."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -27,14 +27,14 @@ _THIGH_M = 0.16  # clearance above the seat that thighs need below a table
 _SAG_M = 0.06  # a seat's middle lies this much below its rim
 _TABLE_HEIGHTS_M = (0.60, 1.0)
 _BED_HEIGHTS_M, _MIN_BED_M2 = (0.38, 0.66), 1.0
-_CUT_BED_M2, _CUT_BED_SIZE_M, _CUT_BED_FILLED = 0.5, (0.9, 1.3), 0.35  # of what the picture shows of a bed
+_CUT_BED_M2, _CUT_BED_SIZE_M, _CUT_BED_FILLED = 0.5, (0.9, 1.3), 0.35  # of the visible part of a bed
 _MIN_SIZE_M = 0.25  # visible size of a seat
 _STOOL_SIZE_M = (0.30, 0.60)
 _MAX_STOOL_HEIGHT_M = 0.52
-# A bench is a narrow plank through under which one sees: a cabinet's front reaches down, a low table is wider.
+# A bench is a narrow plank with a clear view below it: a cabinet's front reaches down, a low table is wider.
 _BENCH_LENGTH_M, _BENCH_WIDTH_M, _BENCH_HEIGHT_M = (0.75, 2.1), (0.2, 0.46), (0.38, 0.52)
-_PLANK_M, _MAX_BELOW = 0.15, 0.5  # what is seen farther below its top is no plank; on so much of its length at most
-_GAP_SQUARES, _EDGE_NOISE_M = np.ones((7, 7), bool), 0.04  # of a plank that is seen at a flat angle
+_PLANK_M, _MAX_BELOW = 0.15, 0.5  # points farther below the top are no plank; maximum share of its length
+_GAP_SQUARES, _EDGE_NOISE_M = np.ones((7, 7), bool), 0.04  # of a plank seen at a grazing angle
 _TABLE_SQUARES = np.ones((7, 7), bool)
 
 # Sample places around a sitter, in metres: forward, leftward.
@@ -85,7 +85,7 @@ class _Squares:
 
     @property
     def height_m(self) -> Float[Array, "candidate a b"]:
-        """Height above the seat of what stands there, metres; nan where nothing does."""
+        """Height of obstacles above the seat in metres; nan where there are none."""
         return np.where(self.inside, self.height_map.top_m[self.row, self.column], np.nan) - self.seat_m
 
     @property
@@ -100,12 +100,18 @@ class _Squares:
 
 
 def find_seats(height_map: HeightMap, evidence: GridClass | None = None) -> tuple[Seat, ...]:
-    """Finds seats, the best first: surfaces of any size with a backrest, and stool-sized ones without.
+    """Finds seats: surfaces of any size with a backrest, and stool-sized ones without.
 
-    A low table has no backrest: what stands behind it is lower, too far away, or a wall. `evidence`, of
-    `class_evidence.seat_evidence`, excludes other furniture and accepts chairs, benches and beds without a backrest.
-    Benches are looked for again with their planks made whole where no seat is found on them. Chairs that a table hides
-    but for their backs come last.
+    A low table has no backrest: what stands behind it is lower, too far away, or a wall. If benches without a seat
+    remain, the search is repeated with their planks completed.
+
+    Args:
+        height_map: The room from above.
+        evidence: Result of `class_evidence.seat_evidence`, (y, x): excludes other furniture and accepts chairs, benches
+            and beds without a backrest. None uses geometry alone.
+
+    Returns:
+        Seats, the best first; those inferred from chair backs behind tables come last.
     """
     seats = _seats_of(height_map, evidence)
     whole = complete_planks(height_map, seats)
@@ -125,10 +131,10 @@ def _seats_of(height_map: HeightMap, evidence: GridClass | None) -> tuple[Seat, 
     seat_squares = candidates.squares(height_map, _ON_SEAT)
     on_seat = seat_squares.height_m
     is_flat = np.abs(on_seat) < _FLATNESS_M
-    # A lower surface counts against a seat only where the seat would have been visible: not below a chair seen edge-on.
+    # A lower surface contradicts a seat only where the seat would have been visible: not below a chair seen edge-on.
     is_contrary = (on_seat >= _FLATNESS_M) | (~is_flat & seat_squares.is_clear)
     labelled = bed_squares(height_map)
-    if evidence is not None:  # on a bed the duvet may be called something that is no furniture
+    if evidence is not None:  # on a bed, the duvet may be labelled as something other than furniture
         labelled = (evidence > 0) | (labelled & (evidence >= 0))
     is_labelled = candidates.squares(height_map, np.zeros((1, 1, 2))).look_up(labelled)[:, 0, 0]
     on_stool, on_bench = (_is_on(kind, height_map, is_seat_height, candidates) for kind in (_is_stool, _is_plank))
@@ -171,7 +177,14 @@ def _horizontal_squares(height_map: HeightMap) -> GridMask:
 
 
 def table_squares(height_map: HeightMap) -> GridMask:
-    """Squares of horizontal surfaces at table height at least 35 cm across: no backs of sofas or chairs."""
+    """Squares of horizontal surfaces at table height (0.6 to 1.0 m) at least 35 cm across: no backs of sofas or chairs.
+
+    Args:
+        height_map: The room from above.
+
+    Returns:
+        Mask (y, x).
+    """
     from scipy import ndimage
 
     found = np.zeros(height_map.top_m.shape, bool)
@@ -184,7 +197,14 @@ def table_squares(height_map: HeightMap) -> GridMask:
 
 
 def bed_squares(height_map: HeightMap) -> GridMask:
-    """Squares of horizontal surfaces at bed height at least 65 cm across and 1 m2 large: larger than low tables."""
+    """Squares of horizontal surfaces at bed height, larger than low tables.
+
+    Args:
+        height_map: The room from above.
+
+    Returns:
+        Mask (y, x) of surfaces at least 65 cm across and 1 m2 large, and of beds cut off by the picture's edge.
+    """
     from scipy import ndimage
 
     found = np.zeros(height_map.top_m.shape, bool)
@@ -199,7 +219,14 @@ def bed_squares(height_map: HeightMap) -> GridMask:
 
 
 def cut_beds(near: GridMask) -> GridMask:
-    """Squares of surfaces that are larger than low tables as far as the picture shows them."""
+    """Squares of surfaces that are larger than low tables even though the picture's edge cuts them off.
+
+    Args:
+        near: Squares at one height, (y, x).
+
+    Returns:
+        Mask (y, x) of components of at least 0.5 m2 that measure at least 0.9 x 1.3 m along their principal axes.
+    """
     from scipy import ndimage
 
     whole = np.asarray(ndimage.binary_opening(near, structure=np.ones((5, 5), bool)), bool)
@@ -216,7 +243,15 @@ def cut_beds(near: GridMask) -> GridMask:
 
 
 def complete_planks(height_map: HeightMap, seats: tuple[Seat, ...]) -> HeightMap:
-    """The map with the planks of benches whole on which no seat is found: at a flat angle little but edges is seen."""
+    """Completes the planks of benches: at a grazing angle little more than their edges is measured.
+
+    Args:
+        height_map: The room from above.
+        seats: Seats already found; planks with a seat on them are left unchanged.
+
+    Returns:
+        The height map with the gaps of these planks filled at their median height.
+    """
     from scipy import ndimage
 
     top_m = height_map.top_m.copy()

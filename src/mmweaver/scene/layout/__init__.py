@@ -1,1 +1,1 @@
-"""The geometry of a room: gravity, surfaces, walls, doors, windows, and what they are made of."""
+"""The geometry of a room: gravity, surfaces, walls, doors, windows, and their materials."""

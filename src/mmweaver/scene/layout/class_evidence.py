@@ -1,4 +1,4 @@
-"""What a class mask tells about a room: cells of given classes, evidence for seats, and the points of landmarks."""
+"""Evidence from a class mask: cells of given classes, evidence for seats, and the points of landmarks."""
 
 from collections.abc import Iterator
 
@@ -21,7 +21,16 @@ PixelMask = Bool[Array, "height width"]
 
 
 def cells_of(grid: DepthGrid, photo: RgbdPhoto, names: frozenset[str]) -> GridBool | None:
-    """The cells of a photo's grid that show one of these classes; None without a mask, or where it shows none."""
+    """Cells of a photo's grid that show one of the given classes.
+
+    Args:
+        grid: The photo's depth grid.
+        photo: The photo, with or without a class mask.
+        names: COCO-Stuff classes.
+
+    Returns:
+        Mask (row, column); None without a class mask or if no cell shows any of the classes.
+    """
     if photo.classes is None or grid.class_index is None:
         return None
     found = np.isin(grid.class_index, indices_of(photo.classes, names))
@@ -29,21 +38,34 @@ def cells_of(grid: DepthGrid, photo: RgbdPhoto, names: frozenset[str]) -> GridBo
 
 
 def indices_of(classes: ClassMask, names: frozenset[str]) -> list[int]:
-    """The indices that a mask uses for classes of these names."""
+    """Indices that a mask uses for classes of these names."""
     return [index for index, name in enumerate(classes.names) if name in names]
 
 
 def regions_of(classes: ClassMask, names: frozenset[str], min_share: float) -> list[PixelMask]:
-    """The connected regions of pixels of these classes that cover at least that share of the picture."""
+    """Connected regions of pixels of the given classes.
+
+    Args:
+        classes: Class mask of the photo.
+        names: COCO-Stuff classes; adjacent pixels of different ones form one region.
+        min_share: Smallest area of a region, as a share of the picture.
+
+    Returns:
+        Masks (height, width), one per region.
+    """
     labels, count = label_components(np.isin(classes.index, indices_of(classes, names)))
     regions = [labels == label for label in range(1, count + 1)]
     return [region for region in regions if region.mean() >= min_share]
 
 
 def seat_evidence(view: AlignedPhoto) -> GridClass | None:
-    """For each square of the height map, whether its points at seat height are mostly something to sit on.
+    """Majority vote of the classes at seat height (0.25 to 0.65 m) in each square of the height map.
 
-    1 for a chair, couch, bench or bed, -1 for other things, 0 where nothing is known. None without a mask.
+    Args:
+        view: The photo in the radar's frame.
+
+    Returns:
+        (y, x): 1 for a chair, couch, bench or bed, -1 for other objects, 0 without evidence. None without a mask.
     """
     mask = view.photo.classes
     if mask is None:
@@ -66,9 +88,16 @@ def _vote(name: str) -> int:
 
 
 def landmark_points(view: AlignedPhoto, planes: tuple[Plane, ...]) -> Iterator[tuple[str, Points]]:
-    """For each connected region of a landmark's class: the kind, and the region's points (point, 3) in metres.
+    """Points of each connected region of a landmark's class.
 
     Where glass gives no depth, the points are those on the wall behind it.
+
+    Args:
+        view: The photo in the radar's frame.
+        planes: Planes of the room, the walls among them.
+
+    Yields:
+        Kind of the landmark, and the region's points in metres, (point, 3), radar's frame.
     """
     mask = view.photo.classes
     if mask is None:
@@ -93,7 +122,7 @@ def landmark_points(view: AlignedPhoto, planes: tuple[Plane, ...]) -> Iterator[t
 
 
 def _intersection_with_walls(rays: Points, planes: tuple[Plane, ...]) -> Points:
-    """Where rays from the radar first meet a wall, metres; nan where they meet none."""
+    """First intersection of rays from the radar with a wall, metres; nan if there is none."""
     nearest = np.full(len(rays), np.inf)
     for wall in (plane for plane in planes if plane.kind == "wall"):
         along = rays @ wall.normal

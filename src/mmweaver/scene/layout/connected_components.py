@@ -12,7 +12,14 @@ Labels = Int[Array, "row column"]
 
 
 def label_components(mask: Mask) -> tuple[Labels, int]:
-    """Numbers the 4-connected components of a mask from 1, 0 elsewhere; also returns their count."""
+    """Labels the 4-connected components of a mask.
+
+    Args:
+        mask: Cells to label, (row, column).
+
+    Returns:
+        Labels (row, column), from 1, 0 outside the mask; and the number of components.
+    """
     from scipy import ndimage
 
     labels, count = cast(tuple[np.ndarray, int], ndimage.label(mask))
@@ -22,7 +29,16 @@ def label_components(mask: Mask) -> tuple[Labels, int]:
 def label_by_distance(
     mask: Mask, points_m: Float[Array, "row column 3"], reach_m: Float[Array, "row column"]
 ) -> tuple[Labels, int]:
-    """Numbers the components of cells that are at most two cells apart in the grid and within `reach_m` in space."""
+    """Labels components of cells that are close both in the grid and in space.
+
+    Args:
+        mask: Cells to label, (row, column).
+        points_m: Position of each cell in metres, (row, column, 3).
+        reach_m: Largest distance in metres to a neighbour one cell away, (row, column); twice that for two cells.
+
+    Returns:
+        Labels (row, column), from 1, 0 outside the mask; and the number of components.
+    """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -46,16 +62,21 @@ def label_by_distance(
 
 
 def bounding_slices(labels: Labels) -> list[tuple[slice, slice]]:
-    """The rows and columns that each numbered component spans."""
+    """Rows and columns spanned by each labelled component, in the order of the labels."""
     from scipy import ndimage
 
     return cast(list[tuple[slice, slice]], ndimage.find_objects(labels))
 
 
 def dilated(mask: Mask, steps: int = 1) -> Mask:
-    """The mask and the cells within `steps` of it, along rows and columns.
+    """Dilates a mask along rows and columns; ten times faster than scipy on the small masks used here.
 
-    scipy's costs ten times as much on the small masks here.
+    Args:
+        mask: Cells, (row, column).
+        steps: Number of dilations by one cell.
+
+    Returns:
+        The dilated mask, (row, column).
     """
     grown = mask.copy()
     for _ in range(steps):

@@ -1,4 +1,4 @@
-"""Doors and windows on the walls of a photo without class mask, from their size and their contrast with the wall."""
+"""Doors and windows on the walls of a photo without a class mask, from their size and contrast with the wall."""
 
 from dataclasses import dataclass
 
@@ -31,7 +31,7 @@ BandM = tuple[float, float]
 
 @dataclass(frozen=True, kw_only=True)
 class LandmarkCandidate:
-    """A landmark before the place to stand at is known."""
+    """A landmark whose approach is not known yet."""
 
     kind: str
     position_m: Vec3  # its middle
@@ -49,9 +49,16 @@ class _WallImage:
 
 
 def find_openings(view: AlignedPhoto, planes: tuple[Plane, ...]) -> list[LandmarkCandidate]:
-    """Spans of a wall's columns, as wide as a door or window, that differ from the wall at the heights of one.
+    """Finds spans of a wall, as wide as a door or window, that differ from the wall at the corresponding heights.
 
-    A door is reported only where hardly anything contradicts it: most doors are missed, and few are false.
+    The criterion for doors is strict: it misses most doors but has few false positives.
+
+    Args:
+        view: The photo in the radar's frame.
+        planes: Planes of the room; walls farther than 10 m are skipped.
+
+    Returns:
+        Candidates of kinds "door" and "window", in metres in the radar's frame.
     """
     found: list[LandmarkCandidate] = []
     for wall in planes:

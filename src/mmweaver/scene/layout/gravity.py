@@ -1,6 +1,6 @@
 """Gravity direction and camera height from a depth grid, and the grid aligned with them.
 
-The floor plane says where up is, supported by the walls.
+The upward direction is the floor's normal, refined by the walls.
 """
 
 from collections.abc import Sequence
@@ -41,7 +41,16 @@ def find_gravity(grid: DepthGrid) -> Gravity:
     """Finds the floor: the lowest large horizontal surface, perpendicular to the vertical ones.
 
     Where no floor is visible, up follows from the walls, else from the assumption of a level camera, and the camera
-    height is assumed; `assumptions` says so. Raises InputError where there is no surface at all.
+    height is assumed.
+
+    Args:
+        grid: Depth grid in the camera frame.
+
+    Returns:
+        Up and floor height; `assumptions` reports what was not measured.
+
+    Raises:
+        InputError: If the depth shows no surfaces.
     """
     usable = np.isfinite(grid.normals).all(axis=2) & np.isfinite(grid.depth_m)
     points, normals = grid.points_m[usable], grid.normals[usable]
@@ -60,6 +69,15 @@ def refined_by_walls(gravity: Gravity, grid: DepthGrid, floor: GridBool, walls: 
 
     Each surface is weighted by its extent over the sensor's error. That error is systematic over a surface (a dark or
     shiny floor appears deeper to a time-of-flight camera), so the number of cells does not reduce it.
+
+    Args:
+        gravity: First estimate, from the floor.
+        grid: Depth grid in the camera frame.
+        floor: Cells of the floor, (row, column).
+        walls: Cells of each wall, (row, column); walls that lean by more than 9 degrees are ignored.
+
+    Returns:
+        The refined gravity; unchanged where too little of the floor is visible.
     """
     if not gravity.has_floor or floor.sum() < _MIN_FLOOR_CELLS:
         return gravity
@@ -87,7 +105,7 @@ def _error_m(points: Points) -> float:
 def _up_direction(normals: Points) -> Vec3 | None:
     """The direction, near the camera's up, to which most surfaces are horizontal or vertical.
 
-    None where no surface is horizontal.
+    Returns None if no surface is horizontal.
     """
     tilt_cosine = -normals[:, 1]
     candidates = normals[tilt_cosine > np.cos(_MAX_TILT_RAD)]
@@ -197,7 +215,18 @@ class AlignedRoom:
 
 
 def align_room(grid: DepthGrid, gravity: Gravity | None = None) -> AlignedRoom:
-    """Aligns the grid with gravity, by default that of `room_gravity`. Raises InputError where it shows no surfaces."""
+    """Aligns a depth grid with gravity and segments its planar surfaces.
+
+    Args:
+        grid: Depth grid in the camera frame.
+        gravity: Gravity if known; None estimates it by `room_gravity`.
+
+    Returns:
+        The grid in the radar's frame, its surfaces, and the rotation between the frames.
+
+    Raises:
+        InputError: If the depth shows no surfaces.
+    """
     gravity = room_gravity(grid) if gravity is None else gravity
     radar_from_camera = level_from_camera(gravity.up_camera)
     aligned = _aligned(grid, radar_from_camera, gravity.floor_z_m)
@@ -207,9 +236,16 @@ def align_room(grid: DepthGrid, gravity: Gravity | None = None) -> AlignedRoom:
 
 
 def room_gravity(grid: DepthGrid) -> Gravity:
-    """Gravity by the floor, refined by the walls found with that estimate.
+    """Estimates gravity from the floor and refines it by the walls found with that first estimate.
 
-    Raises InputError where the depth shows no surfaces.
+    Args:
+        grid: Depth grid in the camera frame.
+
+    Returns:
+        Up in the camera frame and the floor's height.
+
+    Raises:
+        InputError: If the depth shows no surfaces.
     """
     gravity = find_gravity(grid)
     first = _aligned(grid, level_from_camera(gravity.up_camera), gravity.floor_z_m)

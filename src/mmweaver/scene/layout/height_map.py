@@ -1,4 +1,4 @@
-"""The room from above: what stands in each square of 5 cm, and which squares the camera has observed."""
+"""The room from above: obstacles in each square of 5 cm, and which squares the camera has observed."""
 
 from dataclasses import dataclass, replace
 
@@ -44,14 +44,22 @@ class HeightMap:
 
 
 def grid_axes() -> tuple[Float[Array, " x"], Float[Array, " y"]]:
-    """Centres of the map's columns and rows, metres."""
+    """Centres of the map's columns (x, -3 to 3 m) and rows (y, 0 to 5 m), in metres."""
     x_m = np.arange(-HALF_WIDTH_M, HALF_WIDTH_M - 1e-9, CELL_M) + CELL_M / 2
     y_m = np.arange(0, LENGTH_M - 1e-9, CELL_M) + CELL_M / 2
     return x_m, y_m
 
 
 def square_index(points_m: Points, shape: tuple[int, int]) -> Int[Array, " point"]:
-    """Flat index of the square below each point of the radar's frame; -1 outside the map of shape (y, x)."""
+    """Flat index of the square below each point.
+
+    Args:
+        points_m: Points in the radar's frame, metres, (point, 3).
+        shape: Shape of the map, (y, x).
+
+    Returns:
+        Index (point,); -1 outside the map.
+    """
     column = np.floor((points_m[:, 0] + HALF_WIDTH_M) / CELL_M).astype(int)
     row = np.floor(points_m[:, 1] / CELL_M).astype(int)
     inside = (column >= 0) & (column < shape[1]) & (row >= 0) & (row < shape[0])
@@ -61,8 +69,16 @@ def square_index(points_m: Points, shape: tuple[int, int]) -> Int[Array, " point
 def nearest_squares(
     x: Float[Array, "*places"], y: Float[Array, "*places"], x_m: Float[Array, " x"], y_m: Float[Array, " y"]
 ) -> tuple[Int[Array, "*places"], Int[Array, "*places"], Bool[Array, "*places"]]:
-    """Rows and columns of the squares, with centres at `x_m` and `y_m`, of places, metres; 0 outside the map, and
-    which places are inside.
+    """Rows and columns of the squares that contain the given places.
+
+    Args:
+        x: Coordinates of the places in metres, any shape.
+        y: Coordinates of the places in metres, same shape.
+        x_m: Centres of the map's columns, metres.
+        y_m: Centres of the map's rows, metres.
+
+    Returns:
+        Row, column (0 outside the map), and whether the place is inside the map; all of the places' shape.
     """
     column = np.floor((x - x_m[0]) / CELL_M + 0.5).astype(int)
     row = np.floor((y - y_m[0]) / CELL_M + 0.5).astype(int)
@@ -71,7 +87,14 @@ def nearest_squares(
 
 
 def make_height_map(view: AlignedPhoto) -> HeightMap:
-    """Bins the measured points into squares, and traces lines of sight through the squares without points."""
+    """Bins the measured points into squares and traces lines of sight through the squares without points.
+
+    Args:
+        view: The photo in the radar's frame.
+
+    Returns:
+        The room from above, in squares of 5 cm, 6 m wide and 5 m long.
+    """
     view = _subsampled(view)
     points_m = view.points_m[view.photo.depth_m > _MIN_DEPTH_M]
     x_m, y_m = grid_axes()
@@ -162,10 +185,10 @@ def _third_highest(square: Int[Array, " point"], height_m: PerPoint, shape: tupl
 def _lines_of_sight(
     x_m: Float[Array, " x"], y_m: Float[Array, " y"], view: AlignedPhoto
 ) -> tuple[GridMask, Bool[Array, "level y x"], GridMask]:
-    """Which squares are seen through at half of the heights in view, at which seat heights they are clear, and which
-    lie below the picture's lower edge.
+    """Lines of sight through the squares of the map.
 
-    Behind a wall no height is seen through; behind a table the upper ones are.
+    Returns three masks: squares seen through at half of the heights in view, squares clear at each seat height, and
+    squares below the picture's lower edge. Behind a wall no height is seen through; behind a table the upper ones are.
     """
     shape = (len(y_m), len(x_m))
     num_in_view, num_passed = np.zeros(shape, int), np.zeros(shape, int)
@@ -185,8 +208,17 @@ def _lines_of_sight(
 def surface_behind_m(
     x_m: Float[Array, " x"], y_m: Float[Array, " y"], height_m: float, view: AlignedPhoto
 ) -> tuple[GridMask, GridMetres]:
-    """For the squares' centres at a height above the floor: whether they are in view, and how far behind them the
-    measured surface lies, less the sensor's error; nan where nothing is measured.
+    """How far behind a square the measured surface lies, at one height.
+
+    Args:
+        x_m: Centres of the map's columns, metres.
+        y_m: Centres of the map's rows, metres.
+        height_m: Height above the floor in metres.
+        view: The photo in the radar's frame.
+
+    Returns:
+        Whether each square is in view, (y, x); and the depth of the measurement minus that of the square, corrected for
+        the sensor's error, in metres, (y, x), nan where nothing is measured.
     """
     x, y = np.meshgrid(x_m, y_m)
     seen = view.look_up(np.stack([x, y, np.full(x.shape, view.floor_z_m + height_m)], axis=-1))

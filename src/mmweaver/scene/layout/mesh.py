@@ -1,4 +1,4 @@
-"""Triangle mesh of a room for the ray caster: the depth grid where it is continuous, and the whole floor."""
+"""Triangle mesh of a room for ray casting: the depth grid where it is continuous, and the whole floor."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -22,11 +22,20 @@ _GRAZING = np.sin(np.deg2rad(4))
 def make_mesh(
     grid: AlignedGrid, rays: GridVectors, surfaces: Sequence[Surface], is_floor: GridBool, cell_material: GridInt
 ) -> tuple[Vertices, Faces, PerFace]:
-    """Vertices in metres, faces (counter-clockwise seen from the radar) and the material index of each face.
+    """Triangulates the depth grid where it is continuous.
 
-    `rays` (row, column, 3) are the cells' viewing directions in the radar's frame. Cells of a planar surface are
-    projected onto it along their rays, and small holes within one are filled. Of the floor only the cells at the foot
-    of objects remain: the floor itself is one rectangle, made by `rectangle_faces`.
+    Cells of a planar surface are projected onto it along their rays, and small holes within one are filled. Of the
+    floor only the cells at the foot of objects remain: `rectangle_faces` makes the floor itself as one rectangle.
+
+    Args:
+        grid: Depth grid in the radar's frame.
+        rays: Viewing direction of each cell in the radar's frame, (row, column, 3).
+        surfaces: Planar surfaces of the grid.
+        is_floor: Cells of the floor, (row, column).
+        cell_material: Index into MATERIAL_NAMES of each cell, (row, column).
+
+    Returns:
+        Vertices in metres; faces, counter-clockwise seen from the radar; material index per face.
     """
     points, surface_of = _projected_onto_surfaces(grid, rays, surfaces, is_floor)
     points, surface_of, material = _fill_holes(points, rays, surfaces, surface_of, cell_material)
@@ -41,9 +50,13 @@ def make_mesh(
 
 
 def rectangle_faces(planes: Sequence[Plane]) -> tuple[Vertices, Faces, PerFace]:
-    """Rectangles as two triangles each: vertices in metres, faces, index into MATERIAL_NAMES of each face.
+    """Triangulates rectangles, two triangles each; all but the floor lie 3 cm behind their measured surfaces.
 
-    All but the floor lie slightly behind their measured surfaces.
+    Args:
+        planes: Rectangles in the radar's frame.
+
+    Returns:
+        Vertices in metres, (vertex, 3); faces, (face, 3); index into MATERIAL_NAMES per face.
     """
     set_back = [(plane, 0.0 if plane.kind == "floor" else SET_BACK_M) for plane in planes]
     corners = [replace(plane, centre_m=plane.centre_m - by_m * plane.normal).corners_m for plane, by_m in set_back]
@@ -53,7 +66,14 @@ def rectangle_faces(planes: Sequence[Plane]) -> tuple[Vertices, Faces, PerFace]:
 
 
 def joined_meshes(meshes: Sequence[tuple[np.ndarray, ...]]) -> tuple[Vertices, Faces, PerFace]:
-    """All vertices, faces and materials: overlapping triangles do no harm, for a ray ends at the first."""
+    """Concatenates meshes; overlapping triangles are harmless, since a ray ends at the first hit.
+
+    Args:
+        meshes: Vertices in metres, faces and material index per face of each mesh.
+
+    Returns:
+        Vertices, faces and material indices of all meshes.
+    """
     starts = np.cumsum([0, *(len(vertices_m) for vertices_m, *_ in meshes)])
     faces = [mesh[1] + start for mesh, start in zip(meshes, starts, strict=False)]
     return np.concatenate([mesh[0] for mesh in meshes]), np.concatenate(faces), np.concatenate([m[2] for m in meshes])
@@ -109,7 +129,7 @@ def _fill_holes(
 
 
 def _continuous_faces(points: GridVectors, grid: AlignedGrid, surface_of: GridInt) -> Faces:
-    """Two triangles per square of four cells, those that bridge a depth discontinuity or graze the view left out."""
+    """Two triangles per square of four cells, without those that bridge a depth discontinuity or are seen edge-on."""
     rows, columns = surface_of.shape
     index = np.arange(rows * columns).reshape(rows, columns)
     a, b, c, d = (part.ravel() for part in (index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:]))

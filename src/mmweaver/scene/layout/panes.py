@@ -1,7 +1,7 @@
 """Windows, mirrors, screens and doors: the depth of their planes, and panels on the walls.
 
-A depth camera measures what lies behind a pane, the reflected room, or nothing; a radar meets the pane itself, which
-reflects more than the wall around it. Reference: docs/decisions/class-mask.md.
+A depth camera measures what lies behind a pane, the reflected room, or nothing; the radar wave meets the pane itself,
+which reflects more than the wall around it. Reference: docs/decisions/class-mask.md.
 """
 
 from collections.abc import Sequence
@@ -21,15 +21,21 @@ MIN_PANE_SHARE = 0.002  # of the picture
 BORDER = 0.02  # width of the border around a pane to which its plane is fitted, in picture widths
 MIN_BORDER_PIXELS = 60
 MAX_RESIDUAL = 0.04  # median relative error of the border's inverse depths
-BEHIND_M = 0.08  # points this far behind the pane's plane were seen through it
+BEHIND_M = 0.08  # points this far behind the pane's plane were measured through it
 ITERATIONS = 5
 
 
 def fill_panes(photo: RgbdPhoto) -> tuple[RgbdPhoto, tuple[str, ...]]:
-    """Replaces the depth of windows and mirrors by their planes, and fills holes of screens; returns assumptions too.
+    """Replaces the depth of windows and mirrors by their planes, and fills the holes of screens.
 
     A pane's plane is fitted to its border, a screen's to its measured pixels. Only pixels without depth or with depth
     behind the pane change; a pane whose border is not planar is left unchanged.
+
+    Args:
+        photo: Photo with depth; returned unchanged without a class mask.
+
+    Returns:
+        The photo with corrected depth, and a sentence for each kind of correction.
     """
     if photo.classes is None:
         return photo, ()
@@ -101,7 +107,15 @@ _SAME_NORMAL, _SAME_PLANE_M = 0.95, 0.1
 
 
 def find_wall_panels(view: AlignedPhoto, walls: Sequence[Plane]) -> tuple[Plane, ...]:
-    """Panels for the windows, mirrors, doors and screens that the photo's class mask shows on `walls`."""
+    """Panels for the windows, mirrors, doors and screens that the photo's class mask shows on walls.
+
+    Args:
+        view: The photo in the radar's frame.
+        walls: Walls in the same frame.
+
+    Returns:
+        Rectangles with the material of their class; empty without a class mask.
+    """
     classes = view.photo.classes
     if classes is None or not walls:
         return ()
@@ -117,7 +131,16 @@ def find_wall_panels(view: AlignedPhoto, walls: Sequence[Plane]) -> tuple[Plane,
 
 
 def add_wall_panels(planes: Sequence[Plane], panels: Sequence[Plane], walls: Sequence[Plane]) -> tuple[Plane, ...]:
-    """The panels and all planes that none of them covers; `walls` always stay."""
+    """Adds panels to planes and removes the planes that they cover.
+
+    Args:
+        planes: All planes of the room.
+        panels: Panels on its walls.
+        walls: Those of `planes` that are kept in any case.
+
+    Returns:
+        The panels, then the remaining planes.
+    """
 
     def is_kept(plane: Plane) -> bool:
         return any(plane is wall for wall in walls) or not any(_covers(panel, plane) for panel in panels)

@@ -1,6 +1,6 @@
 """Room layout: the walls that a photo shows in part, extended to the cuboid of the room.
 
-A radar's beam is wider than a camera's view. Its strongest echo of a wall is the specular one, from the foot of the
+A radar's beam is wider than a camera's view. A wall's strongest echo is the specular one, from the foot of the
 perpendicular, which for the side walls lies outside the picture. Reference: docs/decisions/walls.md.
 """
 
@@ -38,7 +38,7 @@ class RoomLayout:
     """All planes of the room except the floor."""
 
     planes: tuple[Plane, ...]
-    extended: tuple[Plane, ...]  # those of `planes` that reach beyond what was measured
+    extended: tuple[Plane, ...]  # those of `planes` that extend beyond the measurements
     assumptions: tuple[str, ...]
 
 
@@ -55,9 +55,17 @@ def estimate_layout(
 ) -> RoomLayout:
     """Extends the visible walls until they meet, reach the ceiling, and pass the radar.
 
-    `planes` are the room's planes except the floor; `is_wall` marks the cells that a class mask labels as wall. Rooms
-    that are not rectangular, and walls of which too little is visible, are left unchanged. `is_whole`: the grid shows
-    the room all around, so there may be a wall behind the radar, and a ceiling reaches from wall to wall.
+    Rooms that are not rectangular, and walls of which too little is visible, are left unchanged.
+
+    Args:
+        grid: Depth grid in the radar's frame.
+        planes: Planes of the room except the floor.
+        is_wall: Cells that a class mask labels as wall, (row, column); None without a mask.
+        is_whole: The grid covers the room all around, so that there may be a wall behind the radar, and a ceiling spans
+            the room from wall to wall.
+
+    Returns:
+        All planes except the floor, those extended beyond the measurements, and an assumption that reports it.
     """
     front = _front_normal(planes)
     unchanged = RoomLayout(planes=tuple(planes), extended=(), assumptions=())
@@ -82,7 +90,7 @@ def estimate_layout(
 
 
 def _span_walls(ceiling: Plane, walls: Sequence[Plane]) -> Plane:
-    """A ceiling that covers all that the walls enclose; of them it takes the axes."""
+    """A ceiling that covers the area enclosed by the walls, aligned with them."""
     u, v = walls[0].axis_u, np.cross(ceiling.normal, walls[0].axis_u)
     ends = [wall.centre_m + side * wall.half_size_m[0] * wall.axis_u for wall in walls for side in (-1, 1)]
     along = np.array(ends) @ np.stack([u, v], axis=1)
@@ -91,7 +99,7 @@ def _span_walls(ceiling: Plane, walls: Sequence[Plane]) -> Plane:
 
 
 def _front_normal(planes: Sequence[Plane]) -> Vec3 | None:
-    """Normal of the wall opposite the radar: of the room's four axes the one that points most nearly at the radar."""
+    """Normal of the wall opposite the radar: of the room's four axes, the one that points most nearly at the radar."""
     azimuth = room_azimuth_rad(planes)
     if azimuth is None:
         return None
@@ -101,7 +109,14 @@ def _front_normal(planes: Sequence[Plane]) -> Vec3 | None:
 
 
 def room_azimuth_rad(planes: Sequence[Plane]) -> float | None:
-    """The robust mean azimuth of the vertical planes, modulo 90 degrees; None where they disagree."""
+    """Orientation of a rectangular room: the robust mean azimuth of its vertical planes, modulo 90 degrees.
+
+    Args:
+        planes: Planes of the room; only walls and panels count, weighted by their size.
+
+    Returns:
+        Azimuth of one of the room's axes in radians, from +x towards +y; None if the planes disagree.
+    """
     vertical = [plane for plane in planes if plane.kind in ("wall", "panel")]
     if not vertical:
         return None
@@ -185,7 +200,7 @@ def _cell_area_m2(grid: AlignedGrid, is_cell: GridBool, normal: Vec3) -> PerPoin
 
 
 def _wall_material(planes: Sequence[Plane]) -> str:
-    """The material of most of the visible wall area: the walls of a room are alike."""
+    """The material of most of the visible wall area: the walls of a room are assumed alike."""
     area: dict[str, float] = defaultdict(float)
     for plane in planes:
         if plane.kind == "wall":

@@ -47,7 +47,14 @@ _SOFA_M = 0.8  # a seat of at least this width is upholstered, whatever its colo
 
 
 def floor_material(colours: Float[Array, "cell 3"]) -> str:
-    """Floorboard where the colours (cell, 3), 0 to 1, are those of wood, else concrete."""
+    """Guesses the floor's material from its colour.
+
+    Args:
+        colours: Colours 0 to 1 of the floor's cells, (cell, 3).
+
+    Returns:
+        "floorboard" if the colour is that of wood, else "concrete".
+    """
     return "floorboard" if _is_wooden(colours) else "concrete"
 
 
@@ -58,7 +65,18 @@ def cell_materials(
     is_floor: GridBool,
     seats: Sequence[Seat],
 ) -> tuple[GridInt, tuple[str, ...]]:
-    """Guesses materials: index into MATERIAL_NAMES of every cell (row, column), and the name of each surface's."""
+    """Guesses materials from geometry and colour.
+
+    Args:
+        grid: Depth grid in the radar's frame.
+        rgb: Colour of each cell, 0 to 1, (row, column, 3).
+        surfaces: Planar surfaces except the floor.
+        is_floor: Cells of the floor, (row, column).
+        seats: Seats of the room; wide ones, and those not of a wooden colour, are upholstered.
+
+    Returns:
+        Index into MATERIAL_NAMES of every cell, (row, column); and the material of each surface.
+    """
     wooden = _wooden_cells(rgb)
     material = np.where(wooden, MATERIAL_NAMES.index("wood"), MATERIAL_NAMES.index("chipboard"))
     names = [
@@ -93,7 +111,18 @@ def apply_class_materials(
 ) -> tuple[GridInt, tuple[str, ...]]:
     """Replaces the guesses of `cell_materials` where the class of a cell implies a material.
 
-    A surface, and the floor, takes the majority's material where the classes of half of its cells imply one.
+    A surface, or the floor, takes the majority's material if the classes of more than half of its cells imply one.
+
+    Args:
+        material: Guessed index into MATERIAL_NAMES of each cell, (row, column).
+        names: Guessed material of each surface.
+        class_index: Class of each cell, (row, column), index into `class_names`.
+        class_names: COCO-Stuff classes of the mask.
+        surfaces: Planar surfaces except the floor.
+        is_floor: Cells of the floor, (row, column).
+
+    Returns:
+        The corrected `material` and `names`.
     """
     of_class = np.array([MATERIAL_NAMES.index(m) if (m := material_of(name)) else -1 for name in class_names])
     implied = of_class[np.clip(class_index, 0, len(of_class) - 1)]

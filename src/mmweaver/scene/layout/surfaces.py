@@ -41,13 +41,19 @@ class AlignedGrid:
 
     @property
     def tolerance_m(self) -> GridFloat:
-        """How far a cell may lie from the plane it belongs to, (row, column)."""
+        """Maximum distance of a cell from the plane to which it belongs, (row, column)."""
         return 0.01 + depth_tolerance_m(self.depth_m)
 
     def spacing_m(self, normal: Vec3) -> GridFloat:
-        """Upper bound on the distance of neighbouring cells on a surface of that normal, (row, column).
+        """Upper bound on the distance between neighbouring cells on a surface.
 
         It grows with distance and with the obliqueness of the view.
+
+        Args:
+            normal: Normal of the surface, (3,).
+
+        Returns:
+            Metres, (row, column).
         """
         distance_m = np.linalg.norm(self.points_m, axis=-1)
         normal_distance_m = np.maximum(np.abs(self.points_m @ normal), 0.05)
@@ -63,17 +69,23 @@ class Surface:
 
 
 def floor_cells(grid: AlignedGrid) -> GridBool:
-    """Cells on the floor: at its height, and not clearly vertical."""
+    """Cells at the floor's height that are not clearly vertical, (row, column)."""
     near = np.abs(grid.points_m[..., 2] - grid.floor_z_m) < grid.tolerance_m + 0.015
     return near & ~(np.abs(grid.normals[..., 2]) < 0.7)
 
 
 def find_surfaces(grid: AlignedGrid) -> tuple[Surface, ...]:
-    """All planar surfaces except the floor: walls, vertical panels, horizontal ones; larger ones first within each.
+    """Segments all planar surfaces except the floor.
 
-    Planes are taken out one by one: the strongest peak of a Hough transform, its inliers, the next peak.
+    Planes are peeled off one by one: the strongest peak of a Hough transform, its inliers, the next peak.
+
+    Args:
+        grid: Depth grid in the radar's frame.
+
+    Returns:
+        Walls, vertical panels, then horizontal surfaces; by decreasing area within each.
     """
-    # Points below the floor are reflections in it, or multipath of the depth sensor.
+    # Points below the floor are specular reflections in it, or multipath of the depth sensor.
     is_above = grid.points_m[..., 2] > grid.floor_z_m - grid.tolerance_m
     open_cells = np.isfinite(grid.normals).all(axis=2) & ~floor_cells(grid) & is_above
     horizontal = _horizontal_surfaces(grid, open_cells)
@@ -94,7 +106,7 @@ def _vertical_surfaces(grid: AlignedGrid, open_cells: GridBool) -> tuple[Surface
         normal, offset = _refined_vertical(grid, open_cells, *plane)
         on_plane = open_cells & _is_on(grid, normal, offset, _WALL_TOLERANCE)
         if on_plane.sum() < _MIN_CELLS:
-            # The peak was a coincidence of many small things: leave them out of the next vote.
+            # The peak was a coincidence of many small objects: exclude them from the next vote.
             open_cells = open_cells & ~_is_on(grid, *plane)
             continue
         open_cells = open_cells & ~on_plane

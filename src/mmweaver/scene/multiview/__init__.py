@@ -1,1 +1,1 @@
-"""Several photos of one room, or a scan of it, joined to the whole room."""
+"""Several photos of one room, or a scan of it, fused to the whole room."""

@@ -1,4 +1,4 @@
-"""Joins what several photos show of one room: planes, floor, seats, landmarks."""
+"""Fuses the views of one room from several photos: planes, floor, seats, landmarks."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -17,7 +17,15 @@ SAME_SEAT_M, SAME_LANDMARK_M = 0.4, 0.8
 
 
 def joined_grid(seen: Sequence[SingleView], poses: Sequence[LevelPose]) -> AlignedGrid:
-    """The cells of all photos in one row, (1, cell), in the first camera's level frame; one photo's grid as it is."""
+    """Concatenates the cells of all photos in the first camera's level frame.
+
+    Args:
+        seen: The room as each photo shows it.
+        poses: Level pose of each photo.
+
+    Returns:
+        One row of cells, (1, cell); the grid of a single photo is returned unchanged.
+    """
     if len(seen) == 1:
         return seen[0].room.grid
 
@@ -37,7 +45,15 @@ def joined_grid(seen: Sequence[SingleView], poses: Sequence[LevelPose]) -> Align
 
 
 def joined_planes(planes: Sequence[Plane], is_whole: bool) -> Sequence[Plane]:
-    """The planes of several photos, those that are parts of one joined; the larger says kind, material and axes."""
+    """Merges planes of several photos that are parts of one surface: coplanar to 0.1 m and 10 degrees, and adjacent.
+
+    Args:
+        planes: Planes of all photos in one frame.
+        is_whole: Whether several photos contribute; if not, `planes` is returned unchanged.
+
+    Returns:
+        Merged planes by decreasing area; the largest part determines kind, material and axes.
+    """
     if not is_whole:
         return planes
     joined: list[Plane] = []
@@ -63,7 +79,7 @@ def _is_one(large: Plane, small: Plane) -> bool:
 
 
 def _extent(large: Plane, small: Plane) -> tuple[np.ndarray, np.ndarray]:
-    """Where the corners of the smaller one lie along the axes of the larger, from its centre."""
+    """Extent of the smaller plane's corners along the axes of the larger, from its centre."""
     local = (small.corners_m - large.centre_m) @ np.stack([large.axis_u, large.axis_v], axis=1)
     return local.min(axis=0), local.max(axis=0)
 
@@ -75,7 +91,15 @@ def _joined(large: Plane, small: Plane) -> Plane:
 
 
 def joined_free_space(seen: Sequence[SingleView], poses: Sequence[LevelPose]) -> FreeSpace:
-    """The first camera's map, with the floor that any photo shows free and none shows blocked."""
+    """Fuses the floor maps: floor that any photo shows as free and none shows as blocked.
+
+    Args:
+        seen: The room as each photo shows it.
+        poses: Level pose of each photo.
+
+    Returns:
+        Free floor on the first camera's grid; floor that the first camera sees is free in any case.
+    """
     first = seen[0].free_space
     if len(seen) == 1:
         return first
@@ -92,7 +116,14 @@ def joined_free_space(seen: Sequence[SingleView], poses: Sequence[LevelPose]) ->
 
 
 def joined_places(places: Sequence[Any]) -> list[Any]:
-    """Seats or landmarks, of those of one kind that are near each other the first."""
+    """Removes duplicate seats (within 0.4 m) or landmarks of one kind (within 0.8 m).
+
+    Args:
+        places: Seats or landmarks of all photos in one frame.
+
+    Returns:
+        The first of each group of duplicates, in the order given.
+    """
     kept: list[Any] = []
     for place in places:
         apart_m = SAME_LANDMARK_M if isinstance(place, Landmark) else SAME_SEAT_M

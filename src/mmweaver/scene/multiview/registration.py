@@ -1,4 +1,4 @@
-"""Brings several photos of a room into the level frame of the first: gravity of all, poses, corrected by the walls."""
+"""Registers photos of a room in the level frame of the first: common gravity, poses, corrections by the walls."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -20,50 +20,61 @@ from mmweaver.scene.single_view import SingleView
 
 @dataclass(frozen=True, kw_only=True)
 class LevelPose:
-    """From the level frame of a further camera to that of the first, in which the radar stands at the origin."""
+    """Transform from the level frame of a further camera to that of the first, where the radar stands at the origin."""
 
     turn: Rotation  # about the vertical
     position_m: Vec3  # of the further camera
 
     def points(self, points_m: Float[Array, "*points 3"]) -> Float[Array, "*points 3"]:
-        """Places in the first camera's level frame, metres."""
+        """Transforms positions to the first camera's level frame.
+
+        Args:
+            points_m: Positions in this camera's level frame, metres, (..., 3).
+
+        Returns:
+            The same positions in the first camera's frame.
+        """
         return points_m if self is ALONE else points_m @ self.turn.T + self.position_m
 
     def directions(self, vectors: Float[Array, "*points 3"]) -> Float[Array, "*points 3"]:
-        """Directions in the first camera's level frame."""
+        """Rotates directions (..., 3) to the first camera's level frame."""
         return vectors @ self.turn.T
 
     def turned(self, angle_rad: float) -> "LevelPose":
-        """The camera at the same place, turned further, counterclockwise as seen from above."""
+        """The pose rotated about the vertical at the same position.
+
+        Args:
+            angle_rad: Angle in radians, counterclockwise seen from above.
+        """
         return LevelPose(turn=about_vertical(angle_rad) @ self.turn, position_m=self.position_m)
 
     def moved(self, shift_m: Vec3) -> "LevelPose":
-        """The camera turned alike, at another place."""
+        """The pose shifted by `shift_m`, metres (3,), with the same orientation."""
         return LevelPose(turn=self.turn, position_m=self.position_m + shift_m)
 
     @property
     def inverse(self) -> "LevelPose":
-        """From the first camera's level frame to this one's."""
+        """Transform from the first camera's level frame to this one's."""
         return self if self is ALONE else LevelPose(turn=self.turn.T, position_m=-self.turn.T @ self.position_m)
 
     @property
     def azimuth_rad(self) -> float:
-        """How far the camera is turned, counterclockwise as seen from above."""
+        """Rotation about the vertical, radians, counterclockwise seen from above."""
         return float(np.arctan2(self.turn[1, 0], self.turn[0, 0]))
 
     def plane(self, plane: Plane) -> Plane:
-        """A plane in the first camera's level frame."""
+        """Transforms a plane to the first camera's level frame."""
         return plane if self is ALONE else plane.moved(self.points, self.directions)
 
     def seat(self, seat: Seat) -> Seat:
-        """A seat in the first camera's level frame."""
+        """Transforms a seat to the first camera's level frame."""
         if self is ALONE:
             return seat
         facing_rad = _wrapped(seat.facing_rad + self.azimuth_rad)
         return Seat(position_m=self.points(seat.position_m), facing_rad=facing_rad, size_m=seat.size_m)
 
     def landmark(self, landmark: Landmark) -> Landmark:
-        """A landmark in the first camera's level frame."""
+        """Transforms a landmark, its approach included, to the first camera's level frame."""
         if self is ALONE:
             return landmark
         x, y, _ = self.points(np.array([*landmark.approach_m, 0.0]))
@@ -75,18 +86,28 @@ class LevelPose:
         )
 
     def looked_up(self, values: np.ndarray, of: FreeSpace, x_m: np.ndarray, y_m: np.ndarray) -> np.ndarray:
-        """Values (y, x) of this camera's map of the floor at squares of the first camera's; False outside the map."""
+        """Resamples a floor map of this camera at the squares of the first camera's map.
+
+        Args:
+            values: Boolean map of this camera, (y, x).
+            of: Free space whose axes `values` has.
+            x_m: Centres of the first camera's columns, metres.
+            y_m: Centres of the first camera's rows, metres.
+
+        Returns:
+            Values on the first camera's grid, (y, x); False outside this camera's map.
+        """
         x, y = np.meshgrid(x_m, y_m)
         own = self.inverse.points(np.stack([x, y, np.zeros_like(x)], axis=-1))
         row, column, inside = nearest_squares(own[..., 0], own[..., 1], of.x_m, of.y_m)
         return inside & values[row, column]
 
 
-AT_FIRST, ALONE = (LevelPose(turn=np.eye(3), position_m=np.zeros(3)) for _ in range(2))  # ALONE leaves bits as they are
+AT_FIRST, ALONE = (LevelPose(turn=np.eye(3), position_m=np.zeros(3)) for _ in range(2))  # ALONE keeps bits unchanged
 
 
 def about_vertical(angle_rad: float) -> Rotation:
-    """The rotation counterclockwise as seen from above."""
+    """Rotation matrix (3, 3) about the vertical, counterclockwise seen from above."""
     cosine, sine = np.cos(angle_rad), np.sin(angle_rad)
     return np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
 
@@ -95,9 +116,9 @@ def _wrapped(angle_rad: float) -> float:
     return float(np.angle(np.exp(1j * angle_rad)))
 
 
-SAME_UP = np.cos(np.deg2rad(3.0))  # upward directions of photos that agree
-MAX_TURN_RAD = {True: np.deg2rad(20.0), False: np.deg2rad(3.0)}  # by which walls correct a pose, by its being rough
-SPREAD_M = {True: 0.15, False: 0.03}  # standard deviation of a pose's place, by its being rough
+SAME_UP = np.cos(np.deg2rad(3.0))  # upward directions of two photos agree
+MAX_TURN_RAD = {True: np.deg2rad(20.0), False: np.deg2rad(3.0)}  # correction limit; key: is the pose rough
+SPREAD_M = {True: 0.15, False: 0.03}  # standard deviation of a pose's position; key: as above
 PARALLEL = np.cos(np.deg2rad(6.0))
 SAME_PLANE_M, STEP_M = 0.03, 0.01
 GAP_M = 0.5  # between planes that may be parts of one wall
@@ -107,9 +128,20 @@ MIN_AREA_M2 = 0.2  # of planes that must agree on a shift
 def common_gravity(
     own: Sequence[Gravity], others: Sequence[PosedPhoto]
 ) -> tuple[tuple[Gravity, ...], tuple[LevelPose, ...]]:
-    """Gravity for every photo, the first's first, and the level poses of the others.
+    """Combines the gravity estimates of several photos whose relative poses are known.
 
-    `own`: what each photo says by itself. The floors of all say together where up is and how high the floor lies.
+    Up is the mean of the upward directions that agree, the floor's height the median of the visible floors. Photos with
+    a rough pose keep their own gravity.
+
+    Args:
+        own: Gravity estimated from each photo alone, the first photo first.
+        others: Photos from the second on, with poses relative to the first.
+
+    Returns:
+        Gravity of every photo, the first photo first; and the level poses of `others`.
+
+    Raises:
+        InputError: If a photo lies below the floor by its pose.
     """
     exact = {index + 1: one.pose for index, one in enumerate(others) if not isinstance(one.pose, RadarPose)}
     rotations = {0: np.eye(3), **{index: pose[:3, :3] for index, pose in exact.items()}}
@@ -150,7 +182,7 @@ def _agreed(ups: list[Vec3]) -> Vec3:
 
 
 def _rough_pose(own: Gravity, given: RadarPose, first: Gravity) -> tuple[Gravity, LevelPose]:
-    """Gravity and level pose where only place and turn are known: heights follow from the floors."""
+    """Gravity and level pose where only position and yaw are known: heights follow from the floors."""
     both = own.has_floor and first.has_floor
     height_m = first.floor_z_m - own.floor_z_m if both else given.z_m
     floor_z_m = own.floor_z_m if both else first.floor_z_m - given.z_m
@@ -161,10 +193,16 @@ def _rough_pose(own: Gravity, given: RadarPose, first: Gravity) -> tuple[Gravity
 
 
 def turned_by_walls(pose: LevelPose, planes: Sequence[Plane], known: Sequence[Plane], *, is_rough: bool) -> LevelPose:
-    """A pose turned so that a photo's vertical planes are parallel or perpendicular to those already known.
+    """Corrects a pose's yaw so that the photo's vertical planes are parallel or perpendicular to the known ones.
 
-    `planes` in the photo's own level frame, `known` in the first's. Unchanged where either disagree among themselves,
-    or the turn would be more than a pose's error.
+    Args:
+        pose: Level pose of the photo.
+        planes: Planes in the photo's own level frame.
+        known: Planes in the first camera's level frame.
+        is_rough: Allows a correction of 20 instead of 3 degrees.
+
+    Returns:
+        The corrected pose; unchanged if the planes of either set disagree, or the correction would be larger.
     """
     known_rad = room_azimuth_rad(known)
     own_rad = room_azimuth_rad([pose.plane(one) for one in planes])
@@ -175,9 +213,18 @@ def turned_by_walls(pose: LevelPose, planes: Sequence[Plane], known: Sequence[Pl
 
 
 def moved_by_walls(pose: LevelPose, planes: Sequence[Plane], known: Sequence[Plane], *, is_rough: bool) -> LevelPose:
-    """A pose with which a photo's vertical planes lie on those already known, as far as they are alike.
+    """Corrects a pose's position so that the photo's vertical planes coincide with the known ones.
 
     Planes that nearly coincide vote for the shift along each of the room's two axes.
+
+    Args:
+        pose: Level pose of the photo.
+        planes: Planes in the photo's own level frame.
+        known: Planes in the first camera's level frame.
+        is_rough: Expects a position error of 0.15 instead of 0.03 m (standard deviation).
+
+    Returns:
+        The shifted pose; unchanged if the room has no common axes or too little area agrees.
     """
     known_rad = room_azimuth_rad(known)
     if known_rad is None:
@@ -219,13 +266,21 @@ def _overlap(plane: Plane, other: Plane, axis: Vec3) -> bool:
 
 CELL_M, REACH_M = 0.05, 8.0
 SAME_HEIGHT_M = 0.06
-MIN_HEIGHT_M = 0.15  # above the floor: what is lower is floor
-FLOOR_WEIGHT = 0.2  # of cells where both show the floor: it is the same everywhere
-MIN_CELLS = 150  # that both show, and not as floor
+MIN_HEIGHT_M = 0.15  # above the floor; lower points are floor
+FLOOR_WEIGHT = 0.2  # of cells where both show the floor, which is uninformative
+MIN_CELLS = 150  # seen by both, floor excepted
 
 
 def height_map(points_m: Points, floor_z_m: float) -> Float[Array, "y x"]:
-    """The highest point above each square, metres above the floor, nan where nothing was measured."""
+    """Height of the highest point above each square of 5 cm, 16 x 16 m around the origin.
+
+    Args:
+        points_m: Points in metres, z up, (point, 3); nan is skipped.
+        floor_z_m: Height of the floor in the same frame, metres.
+
+    Returns:
+        Metres above the floor, (y, x); 0 below 0.15 m, nan where nothing was measured.
+    """
     side = int(2 * REACH_M / CELL_M)
     points_m = points_m[np.isfinite(points_m).all(axis=1)]
     column, row = (np.floor((points_m[:, axis] + REACH_M) / CELL_M).astype(int) for axis in (0, 1))
@@ -237,9 +292,17 @@ def height_map(points_m: Points, floor_z_m: float) -> Float[Array, "y x"]:
 
 
 def shift_by_heights(own: Float[Array, "y x"], known: Float[Array, "y x"], spread_m: float) -> Vec3:
-    """The horizontal shift of `own` for which most squares have the height of `known`; none where too few agree.
+    """Horizontal shift that aligns a height map with a known one, by exhaustive search.
 
-    Squares of other heights count against it; `spread_m` is the standard deviation that is expected of the shift.
+    Squares of equal height count for a shift, squares of other heights against it, with a Gaussian prior on its length.
+
+    Args:
+        own: Height map of the photo in metres, (y, x).
+        known: Height map of the earlier photos on the same grid.
+        spread_m: Standard deviation of the expected shift in metres.
+
+    Returns:
+        Shift in metres, (3,); zero if too few squares agree.
     """
     steps = range(-int(2.5 * spread_m / CELL_M), int(2.5 * spread_m / CELL_M) + 1)
     best, shift = -np.inf, (0, 0)
@@ -261,7 +324,16 @@ def shift_by_heights(own: Float[Array, "y x"], known: Float[Array, "y x"], sprea
 def corrected_poses(
     seen: Sequence[SingleView], poses: Sequence[LevelPose], others: Sequence[PosedPhoto]
 ) -> tuple[LevelPose, ...]:
-    """The level pose of every photo, the first's first, each corrected by what those before it show."""
+    """Refines the level pose of every photo by the planes and heights of the photos before it.
+
+    Args:
+        seen: The room as each photo shows it.
+        poses: Level poses of the photos from the second on.
+        others: The same photos with their original poses, which may be rough.
+
+    Returns:
+        The level pose of every photo, the first photo first.
+    """
     placed, known, floor_z_m = [AT_FIRST], list(seen[0].planes), seen[0].view.floor_z_m
     heights = _heights(seen[0], AT_FIRST, floor_z_m)
     for one, pose, other in zip(seen[1:], poses, others, strict=True):

@@ -1,13 +1,13 @@
-"""views.json: several photos of one room with depth, and where their cameras stood.
+"""views.json: several photos of one room with depth, and the poses of their cameras.
 
     {"photos": [
       {"rgb": "a.png", "depth": "a_depth.png", "camera": "camera.json"},
       {"rgb": "b.png", "depth": "b_depth.png", "camera": "camera.json", "place_m": [1.5, 3.0], "turned_deg": 170}
     ]}
 
-The radar stands at the first. A further photo has either `place_m`, metres right of and ahead of the first camera, and
-`turned_deg`, how far it is turned to the right of it, both roughly; or `pose`, the 4 x 4 matrix from its camera (x
-right, y down, z forward) to a world in metres that is the same for all photos, which the first then has, too.
+The radar is at the first camera. A further photo has either a rough `place_m`, metres right of and ahead of the first
+camera, and `turned_deg`, its yaw to the right of it; or `pose`, the 4 x 4 matrix from its camera (x right, y down, z
+forward) to a world frame in metres shared by all photos, in which case the first photo has one too.
 """
 
 import math
@@ -31,7 +31,18 @@ ROTATION_ERROR = 1e-2
 
 
 def read_views(path: Path, *, segmenter: str | None = None) -> CapturedPhoto:
-    """Reads the photos that a views.json names, paths relative to it. Raises InputError."""
+    """Reads the photos that a views.json names, paths relative to it.
+
+    Args:
+        path: The views.json, in the format above.
+        segmenter: Segmentation model for photos without `classes`, as in `read_photo`; None for none.
+
+    Returns:
+        The first photo with the others posed relative to it.
+
+    Raises:
+        InputError: If the file or one of the photos cannot be used.
+    """
     content = read_json(path)
     entries = content.get("photos") if isinstance(content, dict) else None
     if not isinstance(entries, list) or not 1 <= len(entries) <= MAX_PHOTOS:
@@ -69,7 +80,7 @@ def _name(path: Path, number: int, name: Any) -> str:
 
 
 def _pose(path: Path, number: int, entry: dict[str, Any]) -> Pose | RadarPose | None:
-    """What an entry says of its camera; None where it says nothing."""
+    """Pose of an entry's camera; None if the entry has none."""
     if "pose" in entry:
         if "place_m" in entry or "turned_deg" in entry:
             raise InputError(f"{path}: photo {number} has a pose; leave out place_m and turned_deg, or the pose")
@@ -84,7 +95,18 @@ def _pose(path: Path, number: int, entry: dict[str, Any]) -> Pose | RadarPose | 
 
 
 def rigid(values: Any, where: str) -> Pose:
-    """A matrix (4, 4) that turns and moves. Raises InputError for another."""
+    """Validates a rigid transform and orthonormalizes its rotation.
+
+    Args:
+        values: Matrix, (4, 4), as nested lists or array.
+        where: Start of the error message.
+
+    Returns:
+        The pose, (4, 4).
+
+    Raises:
+        InputError: If it is not a finite (4, 4) matrix with a rotation in its upper left.
+    """
     try:
         pose = np.array(values, float)
     except (TypeError, ValueError):

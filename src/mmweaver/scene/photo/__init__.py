@@ -1,1 +1,1 @@
-"""Photos with depth, from the files of cameras, captures and models."""
+"""Photos with depth from the files of cameras, captures and models."""

@@ -24,14 +24,24 @@ LIMITS = {
 
 
 def centred_intrinsics(width: int, height: int, focal_px: float) -> CameraIntrinsics:
-    """Square pixels, and the principal point in the middle of the picture."""
+    """Intrinsics with square pixels and the principal point in the middle of the picture.
+
+    Args:
+        width: Columns of the picture.
+        height: Rows of the picture.
+        focal_px: Focal length in pixels.
+    """
     return CameraIntrinsics(
         fx=focal_px, fy=focal_px, cx=(width - 1) / 2, cy=(height - 1) / 2, width=width, height=height
     )
 
 
 def d455_intrinsics(width: int, height: int) -> CameraIntrinsics:
-    """The intrinsics of a RealSense D455 for a picture of this size.
+    """The intrinsics of a RealSense D455's colour camera.
+
+    Args:
+        width: Columns of the picture.
+        height: Rows of the picture.
 
     >>> d455_intrinsics(640, 480).fx
     384.0
@@ -40,7 +50,14 @@ def d455_intrinsics(width: int, height: int) -> CameraIntrinsics:
 
 
 def lens_intrinsics(width: int, height: int, focal_35mm: float) -> CameraIntrinsics:
-    """The intrinsics of a whole picture by its focal length on 35 mm film, which compares diagonals (CIPA DCG-001).
+    """The intrinsics of an uncropped picture from its 35 mm equivalent focal length.
+
+    The equivalent focal length compares diagonals (CIPA DCG-001).
+
+    Args:
+        width: Columns of the picture.
+        height: Rows of the picture.
+        focal_35mm: Focal length in millimetres on 35 mm film.
 
     >>> round(lens_intrinsics(4000, 3000, 26.0).fx)
     3005
@@ -49,15 +66,27 @@ def lens_intrinsics(width: int, height: int, focal_35mm: float) -> CameraIntrins
 
 
 def read_camera_file(path: Path) -> dict[str, float]:
-    """The numbers of a camera.json: fx, fy, cx, cy in pixels, and width, height and depth_unit_m if it has them.
+    """Reads a camera.json; other keys are ignored.
 
-    Other keys are ignored. Raises InputError where a key is missing or a value is not a plausible number.
+    Args:
+        path: The file.
+
+    Returns:
+        fx, fy, cx, cy in pixels; width, height in pixels and depth_unit_m in metres if present.
+
+    Raises:
+        InputError: If a key is missing or a value is not a plausible number.
     """
     return camera_numbers(read_json(path), path)
 
 
 def camera_numbers(content: Any, path: Path) -> dict[str, float]:
-    """The numbers of a camera's JSON, which `path` holds; see `read_camera_file`."""
+    """Validates the content of a camera.json, see `read_camera_file`.
+
+    Args:
+        content: Parsed JSON.
+        path: File it comes from, for error messages.
+    """
     if not isinstance(content, dict):
         raise InputError(f"{path} must be a JSON object with fx, fy, cx, cy")
     if missing := [key for key in ("fx", "fy", "cx", "cy") if key not in content]:
@@ -73,9 +102,19 @@ def camera_numbers(content: Any, path: Path) -> dict[str, float]:
 
 
 def intrinsics_for(path: Path, numbers: dict[str, float], width: int, height: int) -> CameraIntrinsics:
-    """The intrinsics, in pixels, of a picture of this size; rescaled where the file is for another size.
+    """Intrinsics of a picture from the numbers of a camera.json, rescaled if the file is for another size.
 
-    Raises InputError where the aspect ratios differ, or no camera could have such numbers.
+    Args:
+        path: The camera file, for error messages.
+        numbers: Result of `read_camera_file`.
+        width: Columns of the picture.
+        height: Rows of the picture.
+
+    Returns:
+        Intrinsics in pixels of this picture.
+
+    Raises:
+        InputError: If the aspect ratios differ, or the numbers are implausible for a camera.
     """
     stated = CameraIntrinsics(
         fx=numbers["fx"],

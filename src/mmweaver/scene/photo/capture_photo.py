@@ -41,9 +41,16 @@ class CapturedPhoto:
 
 
 def photo_folder(path: Path | str) -> Path | None:
-    """The folder of the RealSense in a capture, or next to the given radar's folder; None where there is none.
+    """Finds the RealSense folder of a capture, in it or next to the given radar folder.
 
-    Raises InputError where there are several.
+    Args:
+        path: Capture folder, camera folder, or the folder of the capture's radar.
+
+    Returns:
+        The folder that holds depth.zst; None if there is none.
+
+    Raises:
+        InputError: If there are several.
     """
     path = Path(path)
     for parent in (path, path.parent):
@@ -56,9 +63,16 @@ def photo_folder(path: Path | str) -> Path | None:
 
 
 def photo_times_s(folder: Path) -> PerFrame:
-    """Arrival time of each photo of a RealSense's folder, (photo,) seconds of the recorder's clock.
+    """Arrival time of each photo in a RealSense folder.
 
-    Raises InputError where depth_metadata.json is missing or has no times.
+    Args:
+        folder: Folder of the camera.
+
+    Returns:
+        Seconds on the recorder's clock, (photo,).
+
+    Raises:
+        InputError: If depth_metadata.json is missing or has no times.
     """
     entries = read_json(folder / "depth_metadata.json")
     if not isinstance(entries, list) or not entries:
@@ -74,9 +88,18 @@ def photo_times_s(folder: Path) -> PerFrame:
 
 
 def read_capture_photo(path: Path | str, index: int = 0, rgb: Path | None = None) -> CapturedPhoto:
-    """Reads photo `index` of a capture folder with its depth; `rgb` replaces the frame of color.avi.
+    """Reads one photo of a capture with its depth.
 
-    Raises InputError where there is no RealSense in the folder, no such photo, or a file is missing or damaged.
+    Args:
+        path: Capture folder, or as in `photo_folder`.
+        index: Number of the photo, from 0.
+        rgb: Colour picture that replaces the frame of color.avi.
+
+    Returns:
+        The photo in the depth camera's view, with the assumptions made.
+
+    Raises:
+        InputError: If the folder has no RealSense or no such photo, or a file is missing or damaged.
     """
     folder = photo_folder(path)
     if folder is None and not Path(path).exists():
@@ -130,10 +153,20 @@ def coloured(
     rgb: UInt8[Array, "rows columns 3"],
     colour_intrinsics: CameraIntrinsics,
 ) -> RgbPixels:
-    """The colour of each depth pixel, reprojected; where depth is missing, that of a point at the median depth."""
+    """Colours each depth pixel by reprojection into the colour camera, 59 mm to the side.
+
+    Args:
+        depth_m: Depth in metres, (height, width), nan where missing; such pixels are reprojected at the median depth.
+        intrinsics: Intrinsics of the depth camera.
+        rgb: Colour picture, uint8, (rows, columns, 3).
+        colour_intrinsics: Intrinsics of the colour camera.
+
+    Returns:
+        Colour of each depth pixel, uint8, (height, width, 3).
+    """
     filled = np.where(np.isfinite(depth_m), depth_m, np.nanmedian(depth_m))
     points_m = unproject(filled, intrinsics) - np.array([D455_BASELINE_M, 0.0, 0.0])
-    with np.errstate(all="ignore"):  # a damaged lens puts points anywhere
+    with np.errstate(all="ignore"):  # implausible intrinsics may project points anywhere
         pixels = np.nan_to_num(project(points_m, colour_intrinsics)[0])
     column = np.clip(np.rint(pixels[..., 0]), 0, colour_intrinsics.width - 1).astype(int)
     row = np.clip(np.rint(pixels[..., 1]), 0, colour_intrinsics.height - 1).astype(int)
@@ -187,7 +220,7 @@ def _intrinsics(path: Path, content: Any) -> CameraIntrinsics:
 
 
 def _is_rotated(folder: Path) -> bool:
-    """Whether config.toml says that the camera's pictures were rotated."""
+    """Whether the camera's pictures were rotated, according to config.toml."""
     try:
         content = read_toml(folder.parent / "config.toml")
         return bool(content["hardware"][folder.name].get("rotate", False))

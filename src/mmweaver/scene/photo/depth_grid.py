@@ -34,15 +34,28 @@ class DepthGrid:
 
 
 def depth_tolerance_m(depth_m: Float[Array, "..."]) -> Float[Array, "..."]:
-    """How far two measurements of one surface may differ, metres, any shape.
+    """Largest plausible difference of two measurements of one surface.
 
     The error of structured light and stereo grows with depth squared.
+
+    Args:
+        depth_m: Depth in metres, any shape.
+
+    Returns:
+        Metres, same shape.
     """
     return 0.015 + 0.0035 * np.square(depth_m)
 
 
 def make_grid(photo: RgbdPhoto) -> DepthGrid:
-    """Bins a photo to cells: their median depth (never between two surfaces) without outliers, and their normals."""
+    """Bins a photo to cells of median depth (never between two surfaces), without outliers, and fits their normals.
+
+    Args:
+        photo: Photo with depth.
+
+    Returns:
+        Grid about 160 cells wide in the camera frame.
+    """
     height, width = photo.depth_m.shape
     size = max(1, round(width / _CELLS_ACROSS))
     rows, columns = height // size, width // size
@@ -69,7 +82,14 @@ def _most_common(index: ClassPixels, size: int) -> GridInt:
 
 
 def remove_outliers(depth_m: DepthPixels) -> DepthPixels:
-    """Sets pixels to nan whose depth fewer than two of their four neighbours share: speckle and flying pixels."""
+    """Removes speckle and flying pixels: those whose depth fewer than two of their four neighbours share.
+
+    Args:
+        depth_m: Depth in metres, (height, width).
+
+    Returns:
+        The depth with these pixels set to nan.
+    """
     padded = np.pad(depth_m, 1, constant_values=np.nan)
     support = np.zeros(depth_m.shape, int)
     # On a surface seen at a grazing angle, neighbours differ by more than the noise.
@@ -87,7 +107,7 @@ def _blocks(depth_m: DepthPixels, size: int) -> Float[Array, "row column pixel"]
 
 
 def _block_median(blocks: Float[Array, "row column pixel"]) -> GridFloat:
-    """Median of each cell's measurements, metres: of two middle ones the mean if they agree, else the nearer."""
+    """Median of each cell's measurements, metres: of the middle two the mean if they agree, else the nearer."""
     ordered = np.sort(blocks, axis=2)  # nan last
     count = np.isfinite(ordered).sum(axis=2)
     low = np.take_along_axis(ordered, (np.maximum(count - 1, 0) // 2)[..., None], axis=2)[..., 0]

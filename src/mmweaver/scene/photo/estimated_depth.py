@@ -20,7 +20,7 @@ SOMETIMES_METRIC = {"depth_anything", PROMPTED}
 
 @dataclass(frozen=True, kw_only=True)
 class EstimatedDepth:
-    """What a model says of a picture."""
+    """Depth estimated by a model."""
 
     depth_m: DepthPixels  # along the optical axis, nan where the model gives none above 5 cm
     focal_px: float | None  # for models that estimate it, such as Depth Pro
@@ -30,11 +30,19 @@ class EstimatedDepth:
 def estimate_depth(
     rgb: RgbPixels, source: str, *, measured_m: Float[Array, "rows columns"] | None = None
 ) -> EstimatedDepth:
-    """Estimates the depth of a picture (height, width, 3).
+    """Estimates the depth of a picture with a pretrained metric model.
 
-    `source` is a folder, a Hub name or AUTO. `measured_m`: coarse depth of the same view, such as a phone's LiDAR
-    gives, for models that take it as a prompt. Raises InputError where the model cannot be loaded, its depth is not
-    metric, or it takes no prompt.
+    Args:
+        rgb: Picture, uint8, (height, width, 3).
+        source: Folder of the model, its Hub name, or AUTO for `EXAMPLE`.
+        measured_m: Coarse depth of the same view in metres, such as a phone's LiDAR measures, for models that take it
+            as a prompt.
+
+    Returns:
+        Depth along the optical axis and, from models that estimate it, the focal length.
+
+    Raises:
+        InputError: If the model cannot be loaded, its depth is not metric, or it takes no prompt.
     """
     import torch
     from PIL import Image
@@ -69,7 +77,14 @@ def estimate_depth(
 
 
 def scale_note(camera_height_m: float) -> str | None:
-    """A sentence where estimated depth puts the camera at a height at which nobody holds one; None elsewhere."""
+    """Warns if the estimated depth implies an implausible camera height.
+
+    Args:
+        camera_height_m: Height of the camera above the floor in metres.
+
+    Returns:
+        A sentence outside 0.6 to 2.2 m, else None.
+    """
     low_m, high_m = PLAUSIBLE_HEIGHT_M
     if low_m <= camera_height_m <= high_m:
         return None

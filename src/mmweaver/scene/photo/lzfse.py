@@ -1,7 +1,7 @@
-"""Files compressed with Apple's LZFSE, of a known length: the depth of Record3D.
+"""Files compressed with Apple's LZFSE, of known length: the depth of Record3D.
 
-Blocks that are stored as they are need no library; others need pyliblzfse, which is in no extra. How much a file
-unpacks to is added up from the headers of its blocks before it is unpacked.
+Uncompressed blocks need no library; others need pyliblzfse, which is in no extra. The unpacked size is summed from the
+headers of the blocks before anything is unpacked.
 Reference: github.com/lzfse/lzfse, src/lzfse_internal.h (block headers).
 """
 
@@ -20,7 +20,18 @@ BROKEN = "no LZFSE file ({reason}); export the scan again"
 
 
 def read_lzfse(path: Path, length: int) -> bytes:
-    """The content, `length` bytes. Raises InputError for other files, and where a library is needed and missing."""
+    """Reads a file compressed with LZFSE.
+
+    Args:
+        path: The file.
+        length: Length of the content in bytes.
+
+    Returns:
+        The content.
+
+    Raises:
+        InputError: If the file is not LZFSE of this length, or needs a library that is not installed.
+    """
     data = read_bytes(path, max_bytes=2 * length + 4096)
     plain = _stored(data)
     if plain is None:
@@ -38,7 +49,7 @@ def read_lzfse(path: Path, length: int) -> bytes:
 
 
 def _stored(data: bytes) -> bytes | None:
-    """The content of blocks that are all stored as they are; None where there are others."""
+    """Content if all blocks are stored uncompressed; None if others are present."""
     pieces, at = [], 0
     while data[at : at + 4] == STORED:
         size = int.from_bytes(data[at + 4 : at + 8], "little")
@@ -48,7 +59,13 @@ def _stored(data: bytes) -> bytes | None:
 
 
 def unpacked_length(data: bytes) -> int:
-    """What all blocks say that they unpack to; -1 for anything that is no LZFSE stream.
+    """Sums the unpacked size from the headers of all blocks.
+
+    Args:
+        data: Content of the file.
+
+    Returns:
+        Length in bytes; -1 if `data` is not an LZFSE stream.
 
     >>> unpacked_length(b"bvx-" + (3).to_bytes(4, "little") + b"abc" + b"bvx$")
     3

@@ -1,4 +1,4 @@
-"""Reads colour pictures as 8-bit RGB and depth pictures in metres; anything else is refused in one line."""
+"""Reads colour pictures as 8-bit RGB and depth pictures in metres; anything else is rejected in one line."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,7 +24,7 @@ _UINT16_SATURATED = 65535
 
 @dataclass(frozen=True, kw_only=True)
 class Turned:
-    """How a picture lay in its file, and the lens that took it."""
+    """Orientation of a picture in its file, and the lens that took it."""
 
     stored_size: tuple[int, int]  # (width, height)
     orientation: int  # EXIF's; 1 = it was upright
@@ -32,7 +32,17 @@ class Turned:
 
 
 def read_rgb(path: Path) -> tuple[RgbPixels, Turned]:
-    """The upright picture, uint8 (height, width, 3), and how it lay in the file."""
+    """Reads a colour picture and rotates it upright.
+
+    Args:
+        path: Any picture that Pillow reads; 16-bit grey is reduced to 8 bits, transparency blended on white.
+
+    Returns:
+        The upright picture, uint8, (height, width, 3), and its orientation in the file.
+
+    Raises:
+        InputError: If the file is damaged or holds no colours.
+    """
     picture = open_picture(path)
     image = picture.image
     turned = Turned(stored_size=picture.stored_size, orientation=picture.orientation, focal_35mm=picture.focal_35mm)
@@ -46,10 +56,18 @@ def read_rgb(path: Path) -> tuple[RgbPixels, Turned]:
 
 
 def read_depth(path: Path, unit_m: float | None) -> tuple[DepthPixels, Turned]:
-    """Depth in metres, (height, width), nan where there is no measurement, and how it lay in the file.
+    """Reads a depth picture.
 
-    Integers are in units of `unit_m` metres (millimetres if None). Raises InputError for what cannot be depth: 8-bit or
-    colour pictures, pictures without measurements, a wrong unit, or more than a few values that no room has.
+    Args:
+        path: 16-bit PNG, TIFF, or .npy.
+        unit_m: Metres per count of integers; None for millimetres. Floats are in metres.
+
+    Returns:
+        Depth in metres, (height, width), nan without a measurement, and its orientation in the file.
+
+    Raises:
+        InputError: If it cannot be depth: 8-bit or colour pictures, pictures without measurements, a wrong unit, or
+            more than 1 % of values outside 0.01 to 100 m.
     """
     if path.suffix.lower() == ".npy":
         raw = _raw_npy(path)
@@ -75,7 +93,7 @@ def read_depth(path: Path, unit_m: float | None) -> tuple[DepthPixels, Turned]:
 
 
 def _check_possible(path: Path, depth: np.ndarray, measured: np.ndarray, possible: np.ndarray) -> None:
-    """A few impossible values are holes; many are another unit, another mark of a hole, or damage."""
+    """A few implausible values are holes; many mean another unit, another marker of holes, or damage."""
     low, high = _POSSIBLE_M
     share = 1 - np.count_nonzero(possible) / np.count_nonzero(measured)
     if share > _MAX_IMPOSSIBLE:

@@ -1,4 +1,4 @@
-"""A further photo of a room and where its camera stood."""
+"""A further photo of a room and its camera's pose."""
 
 from dataclasses import dataclass
 
@@ -15,9 +15,8 @@ Pose = Float[Array, "4 4"]
 class PosedPhoto:
     """A photo with its camera's pose relative to that of the room's first photo.
 
-    `pose` moves points of this camera (x right, y down, z forward) into the first camera's, metres. A `RadarPose` says
-    roughly where the camera stood and how far it was turned, in the first camera's level frame; the photos' own
-    floors and walls then say the rest.
+    `pose` transforms points of this camera (x right, y down, z forward) into the first camera's, metres. A `RadarPose`
+    is a rough position and yaw in the first camera's level frame, which the photos' own floors and walls refine.
     """
 
     photo: RgbdPhoto
@@ -25,5 +24,5 @@ class PosedPhoto:
 
     @property
     def is_rough(self) -> bool:
-        """Whether only place and turn are known, and these roughly."""
+        """Whether only position and yaw are known, and those roughly."""
         return isinstance(self.pose, RadarPose)

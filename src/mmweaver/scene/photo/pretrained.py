@@ -11,10 +11,18 @@ from mmweaver.core.optional_packages import need
 
 
 def load_pretrained(source: str, option: str, choose: Callable[[Any, Any], Any]) -> tuple[Any, Any, Any]:
-    """Config, image processor and model of a folder or Hub name, on the CPU in evaluation mode; safetensors only.
+    """Loads a pretrained model for inference on the CPU; safetensors only.
 
-    `choose(transformers, config)` returns the class to load with. Raises InputError where `transformers` is missing or
-    the model cannot be loaded.
+    Args:
+        source: Folder or Hub name.
+        option: Command-line option, for error messages.
+        choose: Called with the `transformers` module and the config; returns the class to load.
+
+    Returns:
+        Config, image processor and model in evaluation mode.
+
+    Raises:
+        InputError: If `transformers` is missing or the model cannot be loaded.
     """
     need("pretrained", option, "transformers")
     import transformers

@@ -11,9 +11,15 @@ REACH = 1.6  # maximum distance of a filled pixel to its nearest measurement, in
 
 
 def fill_scattered_holes(depth_m: DepthPixels) -> tuple[DepthPixels, tuple[str, ...]]:
-    """Fills scattered holes of depth (height, width), metres, of which less than 65 % is measured; notes on it too.
+    """Fills scattered holes of sparse depth, of which less than 65 % is measured, by the nearest measurement.
 
-    Nearest measurements, no interpolation: edges stay sharp. Holes larger than the gaps between measurements stay.
+    No interpolation, so that edges stay sharp. Holes larger than the gaps between measurements remain.
+
+    Args:
+        depth_m: Depth in metres, (height, width), nan where missing.
+
+    Returns:
+        The filled depth, and a sentence that reports it if anything was filled.
     """
     from scipy.ndimage import distance_transform_edt
 

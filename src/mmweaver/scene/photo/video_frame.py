@@ -1,4 +1,4 @@
-"""Reads one frame of a video, by PyAV (of the extras `capture` and `phone`)."""
+"""Reads one frame of a video by PyAV (extras `capture` and `phone`)."""
 
 from pathlib import Path
 
@@ -12,10 +12,18 @@ NO_VIDEO = "damaged or no video ({reason}); is it whole? or give the picture wit
 
 
 def read_video_frame(path: Path, index: int, extra: str = "capture") -> RgbPixels:
-    """Frame `index` of a video as uint8 RGB (height, width, 3).
+    """Decodes one frame of a video; the frames before it are decoded too, since most codecs store differences.
 
-    The frames before it are decoded too, since most codecs store differences. `extra`: the one to install where PyAV is
-    missing. Raises InputError there, and where the file is not a video, is damaged, or has no such frame.
+    Args:
+        path: Video, by its suffix MP4/MOV or AVI.
+        index: Number of the frame, from 0.
+        extra: Extra to suggest if PyAV is missing.
+
+    Returns:
+        The frame, uint8 RGB, (height, width, 3).
+
+    Raises:
+        InputError: If PyAV is missing, or the file is not a video, is damaged, or has no such frame.
     """
     need(extra, f"{path} is a video, which", "av")
     import av
@@ -24,7 +32,7 @@ def read_video_frame(path: Path, index: int, extra: str = "capture") -> RgbPixel
     if index < 0:
         raise InputError(f"{path} has no frame {index}; choose one from 0")
     count = 0
-    # one format, from the opened file: a playlist, which names other files and hosts, is not followed
+    # One fixed format on the opened file: playlists, which name other files and hosts, are not followed.
     with (
         open_regular(path) as file,
         foreign_errors(path, NO_VIDEO),

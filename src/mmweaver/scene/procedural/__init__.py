@@ -1,1 +1,1 @@
-"""Furnished procedural rooms: mesh, ground truth, and the photo that a camera at the radar takes."""
+"""Procedural furnished rooms: mesh, ground truth, and the photo that a camera at the radar takes."""

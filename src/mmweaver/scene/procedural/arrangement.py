@@ -1,6 +1,7 @@
 """Arranges furniture by rejection sampling: groups at walls and in the middle, without overlap, with room to walk.
 
-Room frame: x along the wall that the radar faces, y towards it, z up; origin in the corner behind the radar's left.
+Room frame: x along the wall that the radar faces, y towards it, z up; origin in the corner behind the radar on its
+left.
 """
 
 from collections.abc import Sequence
@@ -40,7 +41,14 @@ class Shell:
 def sample_shell(kind: RoomKind, palette: Palette, rng: np.random.Generator, layout: np.random.Generator) -> Shell:
     """Samples the empty room.
 
-    Its size, door and windows are sampled from `rng`; the radar's position and yaw from `layout`.
+    Args:
+        kind: Kind of room: ranges of its size, number of windows.
+        palette: Surfaces by name.
+        rng: Random stream of size, door and windows.
+        layout: Random stream of the radar's position and yaw.
+
+    Returns:
+        The shell; doors and windows are not placed yet.
     """
     behind = float(rng.uniform(0.3, 1.4))
     size = (
@@ -61,7 +69,15 @@ def sample_shell(kind: RoomKind, palette: Palette, rng: np.random.Generator, lay
 
 
 def place_radar(shell: Shell, rng: np.random.Generator) -> Shell:
-    """Samples the radar's position in the middle third of the room and its yaw; less of both in a corridor."""
+    """Samples the radar's position in the middle third of the room and its yaw of up to 14 degrees; less in a corridor.
+
+    Args:
+        shell: The room; the radar's distance from the back wall and its height are kept.
+        rng: Random stream.
+
+    Returns:
+        The shell with the radar moved.
+    """
     narrow = shell.size_m[0] < 2.6
     across = rng.uniform(0.42, 0.58) if narrow else rng.uniform(0.32, 0.68)
     yaw_deg = rng.uniform(-5, 5) if narrow else rng.uniform(-14, 14)
@@ -70,7 +86,15 @@ def place_radar(shell: Shell, rng: np.random.Generator) -> Shell:
 
 
 def place_openings(shell: Shell, rng: np.random.Generator) -> Shell:
-    """Samples the places of door and windows in the walls, and adds lamps; an opening without a place is omitted."""
+    """Samples positions of door and windows in the walls, and adds lamps.
+
+    Args:
+        shell: The room with its openings.
+        rng: Random stream.
+
+    Returns:
+        The shell with `fixed` filled; an opening that finds no position is omitted.
+    """
     width, depth, height = shell.size_m
     fixed = [PlacedPiece(piece=shell.lamp, x_m=width / 2, y_m=y * depth, z_m=height) for y in (0.3, 0.75)]
     for piece in shell.openings:
@@ -91,10 +115,22 @@ def place_openings(shell: Shell, rng: np.random.Generator) -> Shell:
 def arrange(
     kind: RoomKind, shell: Shell, wanted: Sequence[tuple[FurnitureGroup, bool]], rng: np.random.Generator
 ) -> tuple[Shell, tuple[PlacedPiece, ...], tuple[float, float]]:
-    """Places door and windows, then the groups of furniture (with whether each is required), keeping floor free.
+    """Places door and windows, then the groups of furniture, while keeping floor free.
 
-    Also returns the areas of `free_floor_m2`. After several failed attempts the radar is moved, and then the room
-    widened. Raises RuntimeError where all attempts fail, which has not been observed.
+    After 15 failed attempts the radar is moved for each further one, and every 15 attempts the room is widened by 0.25
+    m.
+
+    Args:
+        kind: Kind of room, for the error message.
+        shell: The empty room.
+        wanted: Groups of furniture, each with whether it is required.
+        rng: Random stream.
+
+    Returns:
+        The shell, the placed pieces, and the areas of `free_floor_m2`.
+
+    Raises:
+        RuntimeError: If all 150 attempts fail, which has not been observed.
     """
     for attempt in range(_MAX_ATTEMPTS):
         if attempt >= _ATTEMPTS_PER_SHELL:
@@ -112,9 +148,16 @@ def arrange(
 
 
 def free_floor_m2(shell: Shell, placed: Sequence[PlacedPiece]) -> tuple[float, float]:
-    """Area of the free floor in the radar's window and the picture, and of its largest part for the middle of a body.
+    """Areas of free floor in the radar's range window and the picture.
 
-    Free is what has nothing up to head height and is more than half a metre from the radar; m2.
+    Free is what has no obstacle up to head height and is more than half a metre from the radar.
+
+    Args:
+        shell: The room with its fixed pieces.
+        placed: Furniture.
+
+    Returns:
+        Area in m2 of the free floor, and of its largest connected part for the centre of a body (radius 0.25 m).
     """
     from scipy import ndimage
 
@@ -133,7 +176,16 @@ def free_floor_m2(shell: Shell, placed: Sequence[PlacedPiece]) -> tuple[float, f
 
 
 def covered(boxes: Boxes, x_m: Float[Array, " x"], y_m: Float[Array, " y"]) -> Bool[Array, "y x"]:
-    """Squares (y, x) covered by a box that obstructs a walker; centres in metres."""
+    """Squares covered by a box that obstructs a walker.
+
+    Args:
+        boxes: Boxes with z above the floor.
+        x_m: Centres of the columns, metres.
+        y_m: Centres of the rows, metres.
+
+    Returns:
+        Mask (y, x).
+    """
     low, high = boxes.centre_m[:, 2] - boxes.half_m[:, 2], boxes.centre_m[:, 2] + boxes.half_m[:, 2]
     stops = (high > STEP_OVER_M) & (low < HEAD_M)
     x, y = np.meshgrid(x_m, y_m)

@@ -19,10 +19,20 @@ def measured_depth(
     cos_view: Float[Array, "height width"],
     seed: int,
 ) -> DepthPixels:
-    """Simulates the measurement of a true depth, metres: noise and quantization of the disparity, and holes (nan).
+    """Simulates a stereo measurement: noise and quantization of the disparity, and holes.
 
-    Holes are occlusions of the second camera, glass, surfaces seen at grazing angles (`cos_view`: cosine between ray
-    and normal), and speckles.
+    Holes are occlusions of the second camera, glass, surfaces seen at grazing angles, speckles, and depths outside 0.4
+    to 8 m.
+
+    Args:
+        depth_m: True depth in metres, (height, width).
+        focal_px: Focal length in pixels.
+        is_glass: Pixels of glass, (height, width).
+        cos_view: Cosine between ray and surface normal, (height, width).
+        seed: Seed of the noise.
+
+    Returns:
+        Measured depth in metres, (height, width), nan in holes.
     """
     rng = stream(seed, "procedural", "depth")
     height, width = depth_m.shape

@@ -1,9 +1,10 @@
 """Builds the furniture of procedural rooms from the records of furniture.toml."""
 
+import ast
+import operator
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
-from types import CodeType
 from typing import Any
 
 import numpy as np
@@ -14,17 +15,28 @@ from mmweaver.scene.procedural.parts import Appearance, LocalSeat, Part, Piece
 Span = float | tuple[float, float]
 
 RECORDS = read_tables("furniture.toml")
+_FUNCTIONS: dict[Any, Callable[..., Any]] = {
+    "min": min,
+    "max": max,
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+}
 _FLAGS = ("landmark", "on_wall", "is_free")
 
 
 def make_piece(name: str, palette: Palette, rng: np.random.Generator, **sizes: Any) -> Piece:
-    """Makes a piece of furniture.
+    """Makes a piece of furniture from its record.
 
     Args:
-        name: of its record.
-        palette: surfaces by name; those without a class take the piece's.
-        rng: random sizes are sampled from it, in the order of the record.
-        **sizes: replace those of the record; a pair is a range.
+        name: Name of the record.
+        palette: Surfaces by name; those without a class take the piece's.
+        rng: Random stream of the sizes, sampled in the order of the record.
+        **sizes: Replace those of the record; a pair is a range.
+
+    Returns:
+        The piece in its own frame.
     """
     record: dict[str, Any] = RECORDS[name]
     if "form" in record:
@@ -43,31 +55,55 @@ def make_piece(name: str, palette: Palette, rng: np.random.Generator, **sizes: A
         name=record.get("called", name),
         parts=tuple(builder.parts),
         seats=(*seats, *builder.seats),
+        sizes=known,
         **{flag: record[flag] for flag in _FLAGS if flag in record},
     )
 
 
 def evaluate(formula: Any, sizes: dict[str, Any]) -> Any:
-    """A number or a range (as they are), or what a formula of the sizes gives."""
+    """A number or a range (as they are), or the value of a formula: numbers, sizes, + - * /, min, max.
+
+    Raises ValueError for a formula that has anything else, or no value.
+    """
     if isinstance(formula, tuple):
         return tuple(evaluate(part, sizes) for part in formula)
     if not isinstance(formula, str):
         return formula
-    return eval(_compiled(formula), {"__builtins__": {"min": min, "max": max}}, sizes)
+    try:
+        return _value(_parsed(formula), sizes)
+    except (SyntaxError, TypeError, KeyError, ZeroDivisionError):
+        raise ValueError(
+            f"no value for {formula!r}: a formula has numbers, + - * /, min, max and {', '.join(sizes)}"
+        ) from None
 
 
 @cache
-def _compiled(formula: str) -> CodeType:
-    return compile(formula, "furniture.toml", "eval")
+def _parsed(formula: str) -> ast.expr:
+    return ast.parse(formula, mode="eval").body
+
+
+def _value(node: ast.expr, sizes: dict[str, Any]) -> Any:
+    match node:
+        case ast.Constant(value=int() | float() as number):
+            return number
+        case ast.Name(id=name):
+            return sizes[name]
+        case ast.UnaryOp(op=ast.USub(), operand=of):
+            return -_value(of, sizes)
+        case ast.BinOp(left=left, op=op, right=right):
+            return _FUNCTIONS[type(op)](_value(left, sizes), _value(right, sizes))
+        case ast.Call(func=ast.Name(id=name), args=args, keywords=[]):
+            return _FUNCTIONS[name](*(_value(each, sizes) for each in args))
+    raise TypeError(f"{ast.unparse(node)} is not arithmetic")
 
 
 class Builder:
     """Collects the parts and seats of a piece of furniture.
 
     Args:
-        palette: surfaces by name.
-        rng: random numbers, taken in the order of the calls.
-        coco: class of parts whose surface has none.
+        palette: Surfaces by name.
+        rng: Random stream, consumed in the order of the calls.
+        coco: COCO-Stuff class of parts whose surface has none.
     """
 
     def __init__(self, palette: Palette, rng: np.random.Generator, coco: str):
@@ -76,33 +112,42 @@ class Builder:
         self.seats: list[LocalSeat] = []
 
     def sampled(self, sizes: dict[str, Any]) -> dict[str, Any]:
-        """Samples the sizes of a record, each of which may be a formula of those before it."""
+        """Samples the sizes of a record.
+
+        Args:
+            sizes: Number, range, formula of earlier sizes, or table with a probability `share`, by name.
+
+        Returns:
+            The sampled sizes by name.
+        """
         known: dict[str, Any] = {}
         for name, size in sizes.items():
             if isinstance(size, dict):
-                known[name] = size.get("yes", True) if self.chance(size["share"]) else size.get("no", False)
+                is_so = "share" not in size or self.chance(size["share"])
+                known[name] = size.get("yes", True) if is_so else size.get("no", False)
             else:
                 value = evaluate(size, known)
                 known[name] = self.uniform(*value) if isinstance(value, tuple) else value
         return known
 
     def uniform(self, low: float, high: float) -> float:
-        """A random length, metres."""
+        """Samples a length in metres uniformly."""
         return float(self.rng.uniform(low, high))
 
     def chance(self, share: float) -> bool:
-        """True in this share of pieces."""
+        """Samples True with probability `share`."""
         return bool(self.rng.random() < share)
 
     def box(self, surface: str | Appearance, x: Span, y: Span, z: Span, shape: str = "box", **options: str):
         """Adds a solid inscribed in a box.
 
         Args:
-            surface: appearance, or its name in the palette.
-            x, y: from and to, metres; one number is half the size of a solid in the middle.
-            z: from and to, metres; one number is the height of a solid on the floor.
+            surface: Appearance, or its name in the palette.
+            x: From and to, metres; a single number is half the size of a centred solid.
+            y: As `x`.
+            z: From and to, metres; a single number is the height of a solid on the floor.
             shape: "box", "rounded", "cylinder" or "cone".
-            **options: `class` where it is not that of the piece.
+            **options: `class` if it differs from the piece's.
         """
         (x0, x1), (y0, y1) = (a if isinstance(a, tuple) else (-a, a) for a in (x, y))
         z0, z1 = z if isinstance(z, tuple) else (0.0, z)
@@ -111,7 +156,7 @@ class Builder:
         self.parts.append(Part((x0, y0, z0), (x1, y1, z1), look, shape))
 
 
-# Parts that repeat: each adds what a row of furniture.toml with its name under `repeat` stands for.
+# Repeated parts: each builds the row of furniture.toml that names it under `repeat`.
 def _legs(b: Builder, surface: str, x: float, y: Span, height: float, thick: float):
     """Four legs at the corners of a rectangle, inside it."""
     y0, y1 = y if isinstance(y, tuple) else (-y, y)

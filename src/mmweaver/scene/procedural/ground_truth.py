@@ -16,11 +16,15 @@ from mmweaver.scene.procedural.parts import Boxes, Part, PlacedPiece
 
 _MIN_FACE_M2 = 0.15  # of furniture, to count as a flat rectangle of the room
 _MIN_DISTANCE_M = 0.5  # of a body from the radar
-_REACH_M = 0.45  # from which one uses a landmark
+_REACH_M = 0.45  # distance from which a landmark is used
 
 
 class RadarFrame:
-    """The transform from the room's frame (z = 0 on the floor) to the radar's."""
+    """Transform from the room's frame (z = 0 on the floor) to the radar's.
+
+    Args:
+        shell: The room with the radar in it.
+    """
 
     def __init__(self, shell: Shell):
         cosine, sine = np.cos(shell.radar_yaw_rad), np.sin(shell.radar_yaw_rad)
@@ -29,25 +33,34 @@ class RadarFrame:
         self.yaw_rad = shell.radar_yaw_rad
 
     def points(self, room_m: Float[Array, "*n 3"]) -> Float[Array, "*n 3"]:
-        """Transforms points, metres."""
+        """Transforms points (..., 3) in metres."""
         return (room_m - self.origin_m) @ self.room_from_radar
 
     def vectors(self, room: Float[Array, "*n 3"]) -> Float[Array, "*n 3"]:
-        """Transforms directions."""
+        """Rotates directions (..., 3)."""
         return room @ self.room_from_radar
 
     def angle(self, room_rad: float) -> float:
-        """Transforms an azimuth, from +x towards +y, to -pi to pi."""
+        """Transforms an azimuth in radians, from +x towards +y; the result is in -pi to pi."""
         return float(np.angle(np.exp(1j * (room_rad - self.yaw_rad))))
 
     def boxes(self, boxes: Boxes) -> Boxes:
-        """Transforms boxes."""
+        """Transforms centres and yaw of boxes."""
         return replace(boxes, centre_m=self.points(boxes.centre_m), yaw_rad=boxes.yaw_rad - self.yaw_rad)
 
     def plane(
         self, kind: str, centre_m: Any, normal: Vec3, axis_u: Vec3, half_m: tuple[float, float], material: str
     ) -> Plane:
-        """Transforms a plane."""
+        """Makes a plane in the radar's frame.
+
+        Args:
+            kind: Kind of the plane, as in `Plane`.
+            centre_m: Centre in the room's frame, metres.
+            normal: Unit normal in the room's frame.
+            axis_u: First axis in the room's frame; the second is normal x axis_u.
+            half_m: Half sizes along the axes, metres.
+            material: Name of the material.
+        """
         normal, axis_u = self.vectors(normal), self.vectors(axis_u)
         return Plane(
             kind=kind,
@@ -61,7 +74,17 @@ class RadarFrame:
 
 
 def planes_of(shell: Shell, placed: tuple[PlacedPiece, ...], palette: Palette, frame: RadarFrame) -> tuple[Plane, ...]:
-    """Floor, ceiling, walls, and the large faces of box-shaped furniture, as tops and panels."""
+    """Floor, ceiling, walls, and the large faces of box-shaped furniture, as tops and panels.
+
+    Args:
+        shell: The room.
+        placed: All pieces in it.
+        palette: Surfaces, for the materials of the shell.
+        frame: Transform to the radar's frame.
+
+    Returns:
+        Planes in the radar's frame, floor first; faces of furniture count from 0.15 m2.
+    """
     w, d, h = shell.size_m
     x, y, z = np.eye(3)
     shell_planes = (
@@ -92,7 +115,15 @@ def _faces(item: PlacedPiece, part: Part, frame: RadarFrame) -> Iterator[Plane]:
 
 
 def seats_of(placed: tuple[PlacedPiece, ...], frame: RadarFrame) -> tuple[Seat, ...]:
-    """All seats of the furniture."""
+    """All seats of the furniture.
+
+    Args:
+        placed: All pieces in the room.
+        frame: Transform to the radar's frame.
+
+    Returns:
+        Seats in the radar's frame, facing the front of their piece.
+    """
     return tuple(
         Seat(
             position_m=frame.points(item.points(np.array([[seat.x_m, seat.y_m, seat.height_m]]))[0]),
@@ -105,7 +136,16 @@ def seats_of(placed: tuple[PlacedPiece, ...], frame: RadarFrame) -> tuple[Seat, 
 
 
 def landmarks_of(placed: tuple[PlacedPiece, ...], free: FreeSpace, frame: RadarFrame) -> tuple[Landmark, ...]:
-    """Doors, windows, tables, beds and counters, approached from the front or from the side with the most room."""
+    """Doors, windows, tables, beds and counters, approached from the front or from the side with the most room.
+
+    Args:
+        placed: All pieces in the room.
+        free: Free floor in the radar's frame.
+        frame: Transform to the radar's frame.
+
+    Returns:
+        Landmarks in the radar's frame.
+    """
     found = []
     for item in placed:
         if not item.piece.landmark:
@@ -140,7 +180,16 @@ def _free_share(free: FreeSpace, place: Float[Array, "2"]) -> float:
 
 
 def free_space_of(shell: Shell, boxes: Boxes, frame: RadarFrame) -> FreeSpace:
-    """Free floor on the grid of reconstructed scenes, all of it marked as seen; boxes in the radar's frame."""
+    """Free floor on the grid of reconstructed scenes, all marked as seen.
+
+    Args:
+        shell: The room.
+        boxes: Boxes of all pieces in the radar's frame.
+        frame: Transform to the radar's frame.
+
+    Returns:
+        Floor inside the room that no box covers, more than half a metre from the radar.
+    """
     x_m, y_m = grid_axes()
     above = replace(boxes, centre_m=boxes.centre_m + np.array([0.0, 0.0, shell.radar_m[2]]))
     x, y = np.meshgrid(x_m, y_m)

@@ -26,9 +26,15 @@ def sample_group(name: str, palette: Palette, rng: np.random.Generator) -> Furni
     """Samples a group, or a single piece, until its pieces do not penetrate each other.
 
     Args:
-        name: of the group's record, or the piece's.
-        palette: surfaces by name.
-        rng: random sizes and places are sampled from it.
+        name: Name of the group's record, or of the piece's.
+        palette: Surfaces by name.
+        rng: Random stream of sizes and positions.
+
+    Returns:
+        The group in its own frame.
+
+    Raises:
+        RuntimeError: If the pieces overlap in 20 samples.
     """
     for _ in range(_MAX_DRAWS):
         if name in RECORDS["groups"]:
@@ -47,26 +53,28 @@ def sample_group(name: str, palette: Palette, rng: np.random.Generator) -> Furni
 
 
 def _placed(record: dict[str, Any], palette: Palette, rng: np.random.Generator) -> list[PlacedPiece]:
-    """Makes and places the pieces of a group's record in their order."""
+    """Makes and places the pieces of a group's record in order."""
     draw = Builder(palette, rng, "")
-    known: dict[str, Any] = {"uniform": draw.uniform, "chance": draw.chance, **draw.sampled(record.get("sizes", {}))}
+    known = draw.sampled(record.get("sizes", {}))
     items = []
     for piece_name, *place, options in (
         (*row, {}) if not isinstance(row[-1], dict) else row for row in record["items"]
     ):
         name = options.get("name", piece_name.replace(" ", "_"))
-        known[name] = None
+        known[name] = False
         if ("chance" in options and not draw.chance(options["chance"])) or not evaluate(options.get("if", "1"), known):
             continue
         known["drawn"] = draw.uniform(*options["draw"]) if "draw" in options else None
         sizes = {size: evaluate(value, known) for size, value in options.get("sizes", {}).items()}
         piece = make_piece(piece_name, palette, rng, **sizes)
-        known[name] = PlacedPiece(piece=piece, x_m=0.0, y_m=0.0)
+        known |= {f"{name}_{size}": value for size, value in piece.sizes.items()} | {name: True}
+        known |= {f"{name}_{size}": getattr(piece, size) for size in ("half_m", "depth_m", "back_m", "top_m")}
+        known |= draw.sampled(options.get("then", {}))
         if options.get("wall"):
             place = [*(place or [0.0]), -float(piece.high_m[1]) - GAP_M]
         values = (evaluate(value, known) for value in (*place, *[0.0] * (4 - len(place))))
         x, y, z, turn = (float(draw.uniform(*v) if isinstance(v, tuple) else v) for v in values)
         turn += draw.uniform(-options["sway"], options["sway"]) if "sway" in options else 0.0
-        known[name] = PlacedPiece(piece=piece, x_m=x, y_m=y, z_m=z, yaw_rad=float(np.deg2rad(turn)))
-        items.append(known[name])
+        known |= {f"{name}_x_m": x, f"{name}_y_m": y}
+        items.append(PlacedPiece(piece=piece, x_m=x, y_m=y, z_m=z, yaw_rad=float(np.deg2rad(turn))))
     return items

@@ -35,7 +35,14 @@ LIGHTINGS: Registry[Lighting] = Registry(
 
 @dataclass(frozen=True, kw_only=True)
 class AreaLight:
-    """A rectangle that emits to one side, in the room's frame; without a normal it emits to both."""
+    """A rectangle that emits to one side, in the room's frame.
+
+    Attributes:
+        corner_m: One corner in metres.
+        edges_m: The two edges from this corner in metres, (2, 3).
+        normal: Direction of emission; zero emits to both sides.
+        radiance: Red, green, blue.
+    """
 
     corner_m: Float[Array, "3"]
     edges_m: Float[Array, "2 3"]
@@ -44,7 +51,15 @@ class AreaLight:
 
 
 def area_lights(placed: tuple[PlacedPiece, ...], lighting: Lighting) -> list[AreaLight]:
-    """The windows, ceiling lamps and lamp shades of a room as area lights."""
+    """The windows, ceiling lamps and lamp shades of a room as area lights.
+
+    Args:
+        placed: All pieces in the room.
+        lighting: Radiance of each kind of light.
+
+    Returns:
+        Lights in the room's frame.
+    """
     lamps = []
     for item in placed:
         (x0, y0, _), (x1, y1, top) = item.piece.low_m, item.piece.high_m
@@ -80,7 +95,19 @@ def irradiance(
     normals: Points,
     rng: np.random.Generator,
 ) -> Irradiance:
-    """Irradiance of points with normals: shadowed light of the lamps by stratified sampling, and ambient light."""
+    """Irradiance of surface points: shadowed light of the lamps by stratified sampling, and occluded ambient light.
+
+    Args:
+        caster: Ray caster of the room's mesh.
+        lamps: Area lights in the room's frame.
+        lighting: Lighting with the ambient radiance.
+        points: Points in metres, (point, 3).
+        normals: Unit normals, (point, 3).
+        rng: Random stream of the samples.
+
+    Returns:
+        Red, green, blue irradiance, (point, 3).
+    """
     total = np.zeros_like(points)
     for lamp in lamps:
         area = float(np.linalg.norm(np.cross(*lamp.edges_m)))
@@ -116,9 +143,17 @@ def _ambient_visibility(caster: RayCaster, points: Points, normals: Points, rng:
 
 
 def denoised(light: Picture, points: Picture, normals: Picture) -> Picture:
-    """Removes sampling noise by an edge-avoiding a-trous filter, guided by the points (metres) and normals.
+    """Removes sampling noise by an edge-avoiding a-trous filter, guided by points and normals.
 
     Reference: Dammertz et al., Edge-Avoiding A-Trous Wavelet Transform (2010).
+
+    Args:
+        light: Irradiance, (row, column, 3).
+        points: Surface point of each pixel in metres, (row, column, 3).
+        normals: Unit normals, (row, column, 3).
+
+    Returns:
+        Filtered irradiance, float32, (row, column, 3).
     """
     light, points, normals = (part.astype(np.float32) for part in (light, points, normals))
     for step in (1, 2, 4):

@@ -35,7 +35,16 @@ class Mesh:
 
 
 def make_room_mesh(size_m: tuple[float, float, float], placed: Sequence[PlacedPiece], palette: Palette) -> Mesh:
-    """The mesh of the empty room and of all pieces in it."""
+    """Triangulates the empty room and all pieces in it.
+
+    Args:
+        size_m: Inner width, depth and height in metres.
+        placed: Pieces with their positions.
+        palette: Surfaces of walls, floor and ceiling.
+
+    Returns:
+        The mesh in the room's frame.
+    """
     solids = [(corners, _QUAD, surface, -1) for corners, surface in _shell(size_m, palette)]
     for number, item in enumerate(placed):
         for part in item.piece.parts:

@@ -11,14 +11,14 @@ from mmweaver.scene.procedural.parts import Appearance
 
 
 def _frozen(value: Any) -> Any:
-    """Lists as tuples, however deep."""
+    """Converts lists to tuples recursively."""
     if isinstance(value, dict):
         return {key: _frozen(inner) for key, inner in value.items()}
     return tuple(map(_frozen, value)) if isinstance(value, list) else value
 
 
 def read_tables(name: str) -> Any:
-    """The tables of a TOML file in this folder, lists as tuples."""
+    """Reads a TOML file of this folder with lists converted to tuples."""
     return _frozen(read_toml(Path(__file__).with_name(name)))
 
 
@@ -29,9 +29,15 @@ Palette = dict[str, Appearance]
 
 
 def sample_palette(rng: np.random.Generator, walls: tuple[str, ...], floors: tuple[str, ...]) -> Palette:
-    """Samples a palette with walls and a floor of the given kinds.
+    """Samples a palette: woods, fabrics and paints, one kind of wall and one of floor.
 
-    Surfaces without a class (`coco`) take that of the piece they are used for.
+    Args:
+        rng: Random stream.
+        walls: Kinds of walls to choose from.
+        floors: Kinds of floors to choose from.
+
+    Returns:
+        Appearance by name; those without a class (`coco`) take that of the piece they are used for.
     """
 
     def chosen(options: Any) -> Any:

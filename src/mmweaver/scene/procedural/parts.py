@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -11,7 +12,7 @@ from mmweaver.core.shapes import Array
 Colour = tuple[float, float, float]
 Point = tuple[float, float, float]
 _MANY_PARTS = 24
-OVERLAP_M = 0.0005  # less is touching
+OVERLAP_M = 0.0005  # a smaller penetration is contact
 
 
 @dataclass(frozen=True)
@@ -57,6 +58,9 @@ class Piece:
     landmark: str = ""  # Landmark.kind, if it is a landmark
     on_wall: bool = False  # mounted on a wall at y = 0
     is_free: bool = False  # stands anywhere in a room, not only at a wall
+    sizes: dict[str, Any] = field(
+        default_factory=dict, repr=False, compare=False
+    )  # as sampled, by their record's names
 
     @property
     def low_m(self) -> Float[Array, "3"]:
@@ -85,12 +89,12 @@ class Piece:
     def top_m(self) -> float:
         """Height of the surface for objects, metres: the highest top of a box that is larger than 0.1 m2."""
         sizes = [(part, np.subtract(part.high_m, part.low_m)) for part in self.parts if part.shape == "box"]
-        return max(part.high_m[2] for part, size in sizes if size[0] * size[1] > 0.1)
+        return max((part.high_m[2] for part, size in sizes if size[0] * size[1] > 0.1), default=0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
 class PlacedPiece:
-    """A piece in the room: the position of its origin, and its rotation about the vertical."""
+    """A piece in the room: position of its origin, and rotation about the vertical."""
 
     piece: Piece
     x_m: float
@@ -99,7 +103,7 @@ class PlacedPiece:
     yaw_rad: float = 0.0
 
     def transformed(self, x_m: float, y_m: float, yaw_rad: float) -> "PlacedPiece":
-        """The piece after its group, of which it was in the frame, is rotated and moved to (x, y)."""
+        """Transforms the piece from its group's frame: rotation by `yaw_rad`, then translation to (x, y)."""
         cosine, sine = float(np.cos(yaw_rad)), float(np.sin(yaw_rad))
         return PlacedPiece(
             piece=self.piece,
@@ -110,7 +114,14 @@ class PlacedPiece:
         )
 
     def points(self, local_m: Float[Array, "*point 3"]) -> Float[Array, "*point 3"]:
-        """Transforms points, metres, of the piece's own frame to the room's."""
+        """Transforms points from the piece's own frame to the room's.
+
+        Args:
+            local_m: Points in metres, (..., 3).
+
+        Returns:
+            Points in the room's frame, metres, same shape.
+        """
         cosine, sine = np.cos(self.yaw_rad), np.sin(self.yaw_rad)
         rotation = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
         return local_m @ rotation.T + np.array([self.x_m, self.y_m, self.z_m])
@@ -130,7 +141,7 @@ class Boxes:
         return len(self.centre_m)
 
     def corners_m(self) -> Float[Array, "box 4 2"]:
-        """Corners of the footprints (x, y), metres."""
+        """Corners (x, y) of the footprints in metres, (box, 4, 2)."""
         signs = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
         local = signs * self.half_m[:, None, :2]
         cosine, sine = np.cos(self.yaw_rad)[:, None], np.sin(self.yaw_rad)[:, None]
@@ -139,9 +150,15 @@ class Boxes:
         return np.stack([x, y], axis=-1) + self.centre_m[:, None, :2]
 
     def overlap(self, other: "Boxes", slack_m: float = 0.0) -> Bool[Array, "box other"]:
-        """Which boxes penetrate which by more than `slack_m`; if it is negative, which are closer than that.
+        """Pairwise overlap by the separating-axis theorem in the plane and the interval in height.
 
-        Separating-axis theorem in the plane.
+        Args:
+            other: Other boxes.
+            slack_m: Penetration in metres that does not count; if negative, the gap below which boxes count as
+                overlapping.
+
+        Returns:
+            Mask (box, other).
         """
         gap = np.abs(self.centre_m[:, None, 2] - other.centre_m[None, :, 2])
         is_separate = gap >= self.half_m[:, None, 2] + other.half_m[None, :, 2] - slack_m
@@ -163,7 +180,14 @@ def _axes(yaw_rad: Float[Array, " box"]) -> Float[Array, "box 2 2"]:
 
 
 def part_boxes(placed: Sequence[PlacedPiece]) -> Boxes:
-    """The boxes of all parts of some pieces."""
+    """Boxes of all parts of the given pieces.
+
+    Args:
+        placed: Pieces with their positions.
+
+    Returns:
+        One box per part in the room's frame.
+    """
     rows = [(number, item, part) for number, item in enumerate(placed) for part in item.piece.parts]
     low_m, high_m, origin_m = (
         np.array(values, float).reshape(-1, 3)
@@ -186,7 +210,14 @@ def part_boxes(placed: Sequence[PlacedPiece]) -> Boxes:
 
 
 def bounding_boxes(placed: Sequence[PlacedPiece]) -> Boxes:
-    """The boxes of all parts; of pieces with many parts (shelves full of books) only their bounding box."""
+    """Boxes of all parts; pieces with more than 24 parts (shelves full of books) are represented by their bounding box.
+
+    Args:
+        placed: Pieces with their positions.
+
+    Returns:
+        Boxes in the room's frame.
+    """
     whole = []
     for item in placed:
         piece = item.piece

@@ -1,4 +1,4 @@
-"""A furnished room from its kind, layout and seed. Read this file first: `make_room` names the steps in order."""
+"""A furnished room from its kind, layout and seed. Start with `make_room`, which lists the steps in order."""
 
 from dataclasses import dataclass, field
 from functools import cached_property, partial
@@ -26,7 +26,7 @@ from mmweaver.scene.procedural.rendering import CameraView, cast_view, render_cl
 from mmweaver.scene.procedural.room_kinds import KINDS, RoomKind
 
 MAX_LAYOUTS = 1000
-_OF_SCENE = (  # the fields of a scene that a room has, too
+_OF_SCENE = (  # fields shared with Scene
     "radar_from_camera",
     "vertices_m",
     "faces",
@@ -71,9 +71,14 @@ class ProceduralRoom:
     mesh: Mesh = field(repr=False)  # in the room's own frame
 
     def photo(self, lighting: str = "day", noise: bool = False) -> RgbdPhoto:
-        """Renders colour, depth and classes (640 x 480, a D455's view). With `noise` the depth has errors and holes.
+        """Renders colour, depth and classes in a D455's view, 640 x 480 pixels.
 
-        Raises InputError for a lighting that is not in LIGHTINGS.
+        Args:
+            lighting: Name in LIGHTINGS.
+            noise: Whether the depth has the errors and holes of a stereo camera.
+
+        Raises:
+            InputError: If the lighting is unknown.
         """
         photo_seed = int(stream(self.seed, "procedural", self.kind, self.layout, "photo").integers(2**31))
         return self._rendered(self._view, np.array(self.shell.radar_m), lighting, photo_seed, noise, self._colours)
@@ -81,10 +86,19 @@ class ProceduralRoom:
     def further_photo(
         self, stand: RadarPose, lighting: str = "day", noise: bool = False, *, number: int = 1
     ) -> tuple[RgbdPhoto, Float[Array, "4 4"]]:
-        """The photo of a camera elsewhere, `stand` in the radar's frame, and its pose.
+        """Renders the photo of a camera at another position.
 
-        The pose moves points of this camera into that of `photo`, metres. `number` makes its noise another.
-        Raises InputError for a lighting that is not in LIGHTINGS.
+        Args:
+            stand: Position and yaw of the camera in the radar's frame.
+            lighting: Name in LIGHTINGS.
+            noise: Whether the depth has the errors and holes of a stereo camera.
+            number: Number of the photo, which determines its noise.
+
+        Returns:
+            The photo, and the transform (4, 4) from its camera to that of `photo`, metres.
+
+        Raises:
+            InputError: If the lighting is unknown.
         """
         frame = RadarFrame(self.shell)
         right, ahead, up = stand.from_level
@@ -115,7 +129,11 @@ class ProceduralRoom:
         )
 
     def scene(self, lighting: str = "day") -> Scene:
-        """The true room, including what the camera cannot see."""
+        """The true room, including what the camera cannot see.
+
+        Args:
+            lighting: Lighting of the photo, a name in LIGHTINGS.
+        """
         return Scene(photo=self.photo(lighting), assumptions=(), **{name: getattr(self, name) for name in _OF_SCENE})
 
     @property
@@ -141,14 +159,28 @@ class ProceduralRoom:
 def make_room(kind: str, layout: int = 0, seed: int = 0) -> ProceduralRoom:
     """Makes the room of a kind, layout and seed; the same three give the same bits.
 
-    The seed determines the room (size, door, windows, colours, furniture), the layout its arrangement and the position
-    of the radar. Raises InputError for an unknown kind, a layout outside 0 to 999, or a negative seed.
+    Args:
+        kind: Name in KINDS.
+        layout: Arrangement of the furniture and position of the radar, 0 to 999.
+        seed: Determines the room itself: size, door, windows, colours, furniture.
+
+    Raises:
+        InputError: If the kind is unknown, the layout out of range, or the seed negative.
     """
     return make_room_of(KINDS[kind], layout, seed)
 
 
 def make_room_of(room_kind: RoomKind, layout: int, seed: int) -> ProceduralRoom:
-    """`make_room` by a recipe of one's own, which may be one of KINDS with other sizes."""
+    """Makes a room of a custom kind, such as one of KINDS with other sizes.
+
+    Args:
+        room_kind: What the room is sampled from.
+        layout: As in `make_room`.
+        seed: As in `make_room`.
+
+    Raises:
+        InputError: If the layout is out of range or the seed negative.
+    """
     kind = room_kind.name
     if not 0 <= layout < MAX_LAYOUTS:
         raise InputError(f"the layout must be 0 to {MAX_LAYOUTS - 1}, not {layout}")

@@ -31,7 +31,18 @@ class CameraView:
 def cast_view(
     mesh: Mesh, caster: RayCaster, camera: CameraIntrinsics, room_from_camera: Rotation, eye_m: Vec3
 ) -> CameraView:
-    """Casts a ray through the centre of every pixel from `eye_m`, the camera's position in metres."""
+    """Casts a ray through the centre of every pixel.
+
+    Args:
+        mesh: Mesh of the room.
+        caster: Ray caster of this mesh.
+        camera: Intrinsics.
+        room_from_camera: Rotation from camera axes (x right, y down, z forward) to the room's frame, (3, 3).
+        eye_m: Position of the camera in the room's frame, metres.
+
+    Returns:
+        Surface point, normal and depth of each pixel.
+    """
     rays = viewing_rays(camera).reshape(-1, 3) @ room_from_camera.T
     length = np.linalg.norm(rays, axis=1)
     distance, face = caster.first_hit(np.broadcast_to(eye_m, rays.shape), rays / length[:, None])
@@ -56,7 +67,19 @@ def cast_view(
 def render_rgb(
     mesh: Mesh, caster: RayCaster, view: CameraView, placed: tuple[PlacedPiece, ...], lighting: str, seed: int
 ) -> RgbPixels:
-    """The colour picture, sRGB uint8 (row, column, 3), under a named lighting."""
+    """Renders the colour picture.
+
+    Args:
+        mesh: Mesh of the room.
+        caster: Ray caster of this mesh.
+        view: Surface point of each pixel.
+        placed: All pieces, among them the lights.
+        lighting: Name in LIGHTINGS.
+        seed: Seed of light sampling and sensor noise.
+
+    Returns:
+        sRGB picture, uint8, (row, column, 3).
+    """
     light = LIGHTINGS[lighting]
     appearance = mesh.appearance[view.face]
     colour, emission = _reflectance_and_emission(mesh, view, appearance, light)
@@ -76,7 +99,15 @@ def render_rgb(
 
 
 def render_classes(mesh: Mesh, view: CameraView) -> ClassMask:
-    """The COCO-Stuff class of every pixel; the mask names all classes of the room, in alphabetical order."""
+    """The COCO-Stuff class of every pixel.
+
+    Args:
+        mesh: Mesh of the room.
+        view: Surface point of each pixel.
+
+    Returns:
+        Mask (row, column) that names all classes of the room in alphabetical order.
+    """
     names = ("unlabeled", *sorted({appearance.coco for appearance in mesh.appearances}))
     index = np.array([names.index(appearance.coco) for appearance in mesh.appearances], np.uint8)
     return ClassMask(index=index[mesh.appearance[view.face]], names=names)
@@ -115,7 +146,7 @@ def _emission(pattern: str, light: Lighting) -> np.ndarray:
 
 
 def _surface_coordinates(points: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """Two coordinates along the surface, (point, 2) metres: all but the normal's dominant axis; heights come second."""
+    """Two coordinates along the surface, (point, 2) metres: all but the normal's dominant axis, the height second."""
     drop = np.argmax(np.abs(normals), axis=1)
     kept = np.array([[1, 2], [0, 2], [0, 1]])[drop]
     return np.take_along_axis(points, kept, axis=1)

@@ -1,4 +1,4 @@
-"""Writes a procedural room as files: the input of `mmweaver generate`, the class mask, and the ground truth."""
+"""Writes a procedural room to files: the input of `mmweaver generate`, the class mask, and the ground truth."""
 
 import json
 from pathlib import Path
@@ -15,7 +15,14 @@ TRUTH_VERSION = 1
 
 
 def write_room(folder: Path, room: ProceduralRoom, photo: RgbdPhoto, lighting: str) -> None:
-    """Writes rgb.png, depth.png, camera.json, classes.png, classes.json and truth.json into an existing folder."""
+    """Writes rgb.png, depth.png, camera.json, classes.png, classes.json and truth.json.
+
+    Args:
+        folder: Existing folder.
+        room: The room.
+        photo: Photo of it.
+        lighting: Lighting of the photo, recorded in truth.json.
+    """
     from PIL import Image
 
     Image.fromarray(photo.rgb).save(folder / "rgb.png")
@@ -31,7 +38,15 @@ def write_room(folder: Path, room: ProceduralRoom, photo: RgbdPhoto, lighting: s
 
 
 def ground_truth_of(room: ProceduralRoom, lighting: str) -> dict[str, Any]:
-    """The ground truth of a room for JSON: metres in the radar's frame (x right, y away, z up), radians."""
+    """The ground truth of a room for JSON.
+
+    Args:
+        room: The room.
+        lighting: Lighting of the photo.
+
+    Returns:
+        Seats, landmarks, boxes and camera orientation: metres in the radar's frame (x right, y away, z up), radians.
+    """
     pitch, roll = pitch_and_roll_rad(room.radar_from_camera)
     boxes = room.boxes
     columns = zip(boxes.names, boxes.piece, boxes.centre_m, boxes.half_m, boxes.yaw_rad, strict=True)
@@ -55,7 +70,7 @@ def ground_truth_of(room: ProceduralRoom, lighting: str) -> dict[str, Any]:
 
 
 def _rounded(value: Any) -> Any:
-    """Numbers to a tenth of a millimetre, as lists; names and whole numbers as they are."""
+    """Numbers rounded to a tenth of a millimetre, as lists; names and integers unchanged."""
     if isinstance(value, dict):
         return {name: _rounded(inner) for name, inner in value.items()}
     return value if isinstance(value, str | int) else np.round(np.asarray(value, float), 4).tolist()

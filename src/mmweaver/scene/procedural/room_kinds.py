@@ -1,4 +1,4 @@
-"""The kinds of rooms, by the rows of rooms.toml: size, surfaces, and furniture."""
+"""The kinds of rooms from rooms.toml: size, surfaces and furniture."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -13,7 +13,15 @@ Range = tuple[float, float]
 class RoomKind:
     """What rooms of a kind are sampled from.
 
-    All `required` groups are placed, in that order; then each `optional` one with its probability.
+    Attributes:
+        name: Name of the kind.
+        width_m: Range of the inner width in metres.
+        walls: Kinds of walls to choose from.
+        floors: Kinds of floors to choose from.
+        required: Groups of furniture that are placed in any case, in this order.
+        optional: Probability and name of further groups.
+        wall_distance_m: Range of the distance from the radar to the wall that it faces.
+        num_windows: Number of windows.
     """
 
     name: str
@@ -22,12 +30,12 @@ class RoomKind:
     floors: tuple[str, ...]
     required: tuple[str, ...]
     optional: tuple[tuple[float, str], ...]
-    wall_distance_m: Range = (2.9, 3.35)  # from the radar to the wall that it faces
+    wall_distance_m: Range = (2.9, 3.35)
     num_windows: int = 1
 
 
 def _room_kind(name: str, *, small_objects: bool = True, optional: tuple, **row: Any) -> RoomKind:
-    """A row of [kinds] in rooms.toml."""
+    """Makes a kind from a row of [kinds] in rooms.toml."""
     return RoomKind(name=name, optional=optional + (TABLES["small_objects"] if small_objects else ()), **row)
 
 

@@ -19,7 +19,15 @@ _TABLE = stream(0, "procedural", "lattice").uniform(-1, 1, (64, 64)).astype(np.f
 
 
 def lattice_noise(points: Plane2, scale_m: float | tuple[float, float]) -> Shade:
-    """Value noise in -1 to 1 over the plane: random values on a lattice with spacing `scale_m`, interpolated."""
+    """Value noise in -1 to 1: random values on a lattice, interpolated.
+
+    Args:
+        points: Surface coordinates in metres, (point, 2).
+        scale_m: Spacing of the lattice in metres, one or one per coordinate.
+
+    Returns:
+        Noise (point,).
+    """
     place = points / np.asarray(scale_m, np.float32)
     cell = np.floor(place)
     fraction = place - cell
@@ -33,7 +41,15 @@ def lattice_noise(points: Plane2, scale_m: float | tuple[float, float]) -> Shade
 
 
 def albedo(appearance: Appearance, plane: Plane2) -> Rgb:
-    """Reflectance (point, 3) in linear RGB at surface coordinates `plane`, (point, 2) metres."""
+    """Reflectance of a surface with its texture.
+
+    Args:
+        appearance: Colour and pattern.
+        plane: Surface coordinates in metres, (point, 2).
+
+    Returns:
+        Linear RGB, (point, 3).
+    """
     colour = np.asarray(appearance.colour, np.float32)
     layers = _NOISE.get(appearance.pattern)
     made = PATTERNS[appearance.pattern](plane, colour) if layers is None else _noise(plane, layers)

@@ -1,1 +1,1 @@
-"""A room that was scanned or modelled as a mesh, seen from where the radar stands."""
+"""A room scanned or modelled as a mesh, seen from the radar's position."""

@@ -1,7 +1,7 @@
-"""Wide photos with depth and classes of a mesh, taken where the radar stands; from them the room is reconstructed.
+"""Wide photos with depth and classes of a mesh, taken at the radar's position; the room is reconstructed from them.
 
-Each picture spans 100 degrees, and there is one for each quarter of the horizon: walls beside and behind the radar
-return its strongest echoes.
+Each picture spans 100 degrees, one per quarter of the horizon: walls to the sides of the radar and behind it return its
+strongest echoes.
 """
 
 from collections.abc import Sequence
@@ -25,9 +25,9 @@ from mmweaver.scene.scanned_mesh.viewpoint import Viewpoint, find_viewpoint
 
 WIDTH, HEIGHT, VIEW_DEG = 640, 480, 100.0
 UPWARDS_RAD = np.deg2rad(40.0)
-MAX_NAMES = 12  # that a note lists
+MAX_NAMES = 12  # listed in a note
 MIN_SEEN = 0.2  # share of a picture's pixels
-TILT_RAD = np.deg2rad(-8.0)  # a little down, so that the floor is seen from nearer
+TILT_RAD = np.deg2rad(-8.0)  # slightly down, so that more of the near floor is visible
 
 
 def read_mesh_photo(
@@ -39,13 +39,22 @@ def read_mesh_photo(
     up: str | None = None,
     materials: Path | None = None,
 ) -> CapturedPhoto:
-    """The photos of a mesh (GLB, PLY, OBJ): one ahead of the radar, others all around and up.
+    """Renders the photos of a mesh (GLB, PLY, OBJ): one ahead of the radar, the others around it and up.
 
-    `eye` is the radar's place in the mesh's own axes and unit, `look_deg` the direction it looks in, in degrees from
-    the mesh's x axis, counterclockwise as seen from above; both are chosen where they are not given. `unit` (m, cm,
-    mm, inch, foot) and `up` (y or z) say what the file does not. `materials`: a JSON object of names in the mesh and
-    classes of COCO-Stuff, or materials, such as {"Material.003": "couch", "pane": "glass"}; names that are classes
-    need no entry. Raises InputError.
+    Args:
+        path: The mesh.
+        eye: Position of the radar in the mesh's own axes and unit; None chooses one.
+        look_deg: Boresight azimuth in degrees from the mesh's x axis, counterclockwise from above; None chooses one.
+        unit: Unit of the file (m, cm, mm, inch, foot); None infers it.
+        up: Axis that points up (y or z); None infers it.
+        materials: JSON object from names in the mesh to COCO-Stuff classes or materials, such as {"Material.003":
+            "couch", "pane": "glass"}; names that are classes need no entry.
+
+    Returns:
+        The photo ahead with the others posed relative to it, and the assumptions made.
+
+    Raises:
+        InputError: If the mesh or the table cannot be used, or hardly anything is visible from the position.
     """
     given = {} if materials is None else _table(materials)
     found = upright(path, read_mesh(path), unit=unit, up=up)
@@ -74,13 +83,13 @@ def read_mesh_photo(
 
 
 def _axes_around(azimuth_rad: float) -> list[np.ndarray]:
-    """Axes of cameras that look to the other three quarters of the horizon, and ahead at the ceiling."""
+    """Axes of cameras that look at the other three quarters of the horizon, and ahead at the ceiling."""
     quarters = [_camera_axes(azimuth_rad + quarter * np.pi / 2) for quarter in (1, 2, 3)]
     return [*quarters, _camera_axes(azimuth_rad, UPWARDS_RAD)]
 
 
 def _pose(first_axes: np.ndarray, axes: np.ndarray) -> np.ndarray:
-    """(4, 4) from another camera at the same place into the first."""
+    """Transform (4, 4) from another camera at the same position to the first."""
     pose = np.eye(4)
     pose[:3, :3] = first_axes @ axes.T
     return pose
@@ -89,7 +98,7 @@ def _pose(first_axes: np.ndarray, axes: np.ndarray) -> np.ndarray:
 def _photo(
     mesh: ColouredMesh, caster: RayCaster, eye_m: np.ndarray, axes: np.ndarray, classes: np.ndarray | None
 ) -> tuple[RgbdPhoto, float]:
-    """The picture from a place, and the share of its pixels that show anything."""
+    """The picture from a position, and the share of its pixels that show anything."""
     camera = centred_intrinsics(WIDTH, HEIGHT, WIDTH / 2 / np.tan(np.deg2rad(VIEW_DEG) / 2))
     rays = viewing_rays(camera).reshape(-1, 3) @ axes
     length = np.linalg.norm(rays, axis=1)
@@ -115,7 +124,7 @@ def _camera_axes(azimuth_rad: float, tilt_rad: float = TILT_RAD) -> np.ndarray:
 
 
 def _classes(mesh: ColouredMesh, given: dict[str, str]) -> np.ndarray | None:
-    """The class of each name of the mesh, as an index into NAMES; None where no name says anything."""
+    """Class of each name of the mesh, as an index into NAMES; None if no name implies a class."""
     index = np.array([NAMES.index(given.get(name) or _class_in(name)) for name in mesh.names])
     return index if index.any() else None
 
@@ -130,7 +139,7 @@ def _class_in(name: str) -> str:
 
 
 def _unused(mesh: ColouredMesh, given: dict[str, str]) -> tuple[str, ...]:
-    """Names of the table that the mesh has not, and those that it has: a name that is misspelt changes nothing."""
+    """Reports table entries that the mesh does not have, and the names it has, since misspelt names have no effect."""
     unused = [name for name in given if name not in mesh.names]
     if not unused:
         return ()

@@ -22,7 +22,7 @@ GREY = 180
 
 @dataclass(frozen=True, kw_only=True)
 class ColouredMesh:
-    """Triangles as they are stored: in the file's own unit and axes."""
+    """Triangles as stored, in the file's own unit and axes."""
 
     vertices: Float[Array, "vertex 3"]
     faces: Faces
@@ -33,9 +33,16 @@ class ColouredMesh:
 
 
 def read_mesh(path: Path) -> ColouredMesh:
-    """Reads a mesh. An .obj finds its .mtl and textures in its own folder alone.
+    """Reads a mesh; the .mtl and textures of an .obj are read from its own folder only.
 
-    Raises InputError where trimesh is missing or the file holds no triangles.
+    Args:
+        path: GLB, PLY or OBJ.
+
+    Returns:
+        Triangles with colour and material or object name.
+
+    Raises:
+        InputError: If trimesh is missing or the file holds no triangles.
     """
     need("mesh", f"{path.name} is a mesh, which", "trimesh")
     import trimesh
@@ -45,7 +52,7 @@ def read_mesh(path: Path) -> ColouredMesh:
     if suffix not in SUFFIXES:
         raise InputError(f"{path} is no mesh that is read; give one of {', '.join(SUFFIXES)}")
     content = read_bytes(path, max_bytes=MAX_BYTES)
-    logging.getLogger("trimesh").setLevel(logging.CRITICAL)  # what is wrong becomes an InputError, or is left out
+    logging.getLogger("trimesh").setLevel(logging.CRITICAL)  # problems raise InputError or are ignored
     with foreign_errors(path, "no mesh ({reason}); save it as GLB, PLY or OBJ with triangles"):
         loaded: Any = trimesh.load_scene(
             BytesIO(content),
@@ -65,7 +72,7 @@ def read_mesh(path: Path) -> ColouredMesh:
 
 
 def _files_in_folder_of(path: Path) -> Any:
-    """A resolver that reads plain names in the folder of a file, and nothing else."""
+    """A resolver that reads plain file names in the folder of a file only."""
     from trimesh.resolvers import Resolver
 
     class OwnFolder(Resolver):

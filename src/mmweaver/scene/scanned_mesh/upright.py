@@ -1,4 +1,4 @@
-"""A mesh in metres with gravity along -z: unit and upward direction are checked against what rooms are like."""
+"""A mesh in metres with gravity along -z: unit and upward direction are checked against the size of rooms."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,13 +11,13 @@ from mmweaver.core.shapes import Array
 from mmweaver.scene.scanned_mesh.read_mesh import ColouredMesh
 
 UNITS_M = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254, "foot": 0.3048}
-GUESSED = ("m", "cm", "mm")  # of files that say none; glTF is in metres
+GUESSED = ("m", "cm", "mm")  # for files without a unit; glTF is in metres
 HEIGHT_M, WIDTH_M = (1.6, 12.0), (1.5, 80.0)  # of rooms
 LEVEL = np.cos(np.deg2rad(12))  # cosine between up and the normals of level surfaces, at least
 MIN_LEVEL = 0.08  # share of the area: of floors, and tops of furniture
 FLOOR_BIN_M = 0.05
 MAX_FLOOR_M, SLAB_SHARE = 0.4, 0.7  # of a modelled slab: its top has nearly the area of its underside
-CLEARLY_MORE = 1.2  # level area with another axis up, before it is said
+CLEARLY_MORE = 1.2  # ratio of level area with another axis up, to report it
 UPWARDS = {"y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
@@ -32,14 +32,31 @@ class UprightMesh:
     assumptions: tuple[str, ...]
 
     def converted(self, place: np.ndarray) -> np.ndarray:
-        """A place given in the file's own axes and unit, (3,) metres here."""
+        """Converts a position from the file's axes and unit to this frame.
+
+        Args:
+            place: Position in the file's axes and unit, (3,).
+
+        Returns:
+            Metres in this frame, (3,).
+        """
         return self.unit_m * (self.to_mesh @ place - np.array([0.0, 0.0, self.floor]))
 
 
 def upright(path: Path, mesh: ColouredMesh, *, unit: str | None = None, up: str | None = None) -> UprightMesh:
-    """Finds unit, upward direction and floor; `unit` of UNITS_M and `up` ("y" or "z") say what the file does not.
+    """Finds unit, upward direction and floor of a mesh.
 
-    Raises InputError where the mesh is no room: not of a room's size in any unit, or without level surfaces.
+    Args:
+        path: File of the mesh; glTF is in metres with y up.
+        mesh: The mesh as stored.
+        unit: Key of UNITS_M; None infers it from the size of rooms.
+        up: "y" or "z"; None infers it from the area of level surfaces.
+
+    Returns:
+        The mesh in metres, z up, floor at 0.
+
+    Raises:
+        InputError: If the mesh is not a room: no plausible size in any unit, or no level surfaces.
     """
     if unit is not None and unit not in UNITS_M:
         raise InputError(f"unknown unit {unit!r}; known: {', '.join(UNITS_M)}")
@@ -94,7 +111,7 @@ def _axes(up: np.ndarray) -> np.ndarray:
 
 
 def _unit(path: Path, turned: np.ndarray, unit: str | None) -> tuple[float, tuple[str, ...]]:
-    """The unit with which the mesh is as large as a room, and what was assumed."""
+    """The unit in which the mesh has the size of a room, and the assumption made."""
     low, high = np.percentile(turned, [1, 99], axis=0)
     width, height = float((high - low)[:2].max()), float((high - low)[2])
     if unit is not None:

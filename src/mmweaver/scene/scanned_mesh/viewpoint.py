@@ -1,4 +1,4 @@
-"""Where a radar would stand in a scanned room: near a wall, with much of the room ahead."""
+"""A radar position in a scanned room: near a wall, with much of the room ahead."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ from mmweaver.core.shapes import Vec3
 EYE_HEIGHT_M = 1.2
 STEP_M, MIN_FREE = 0.4, 4  # between candidates; free neighbours of a place
 HEAD_M, FOOT_M = 1.9, 0.12
-FAR_M = 6.0  # what lies farther is of no use
+FAR_M = 6.0  # larger distances do not count
 _DIRECTIONS = 48
 _HALF_VIEW = 6  # directions to either side: 45 degrees
 _MAX_CANDIDATES = 400
@@ -19,16 +19,25 @@ _MAX_CANDIDATES = 400
 
 @dataclass(frozen=True, kw_only=True)
 class Viewpoint:
-    """A place in metres (z up, floor at 0) and the azimuth that is looked at, from +x towards +y."""
+    """A position in metres (z up, floor at 0) and the boresight azimuth, from +x towards +y."""
 
     eye_m: Vec3
     azimuth_rad: float
 
 
 def find_viewpoint(caster: RayCaster, vertices_m: np.ndarray, place_m: Vec3 | None = None) -> Viewpoint:
-    """The place above free floor, near a wall, from which most of the room lies ahead; `place_m` fixes the place.
+    """Finds the position above free floor, near a wall, with most of the room ahead.
 
-    Raises InputError where no floor is free.
+    Args:
+        caster: Ray caster of the upright mesh.
+        vertices_m: Vertices of the mesh in metres, (vertex, 3).
+        place_m: Fixed position in metres, (3,); only the azimuth is then chosen. None searches a grid.
+
+    Returns:
+        Position and azimuth.
+
+    Raises:
+        InputError: If no floor is free.
     """
     places = _free_places(caster, vertices_m) if place_m is None else np.asarray(place_m, float)[None]
     if not len(places):

@@ -1,1 +1,1 @@
-"""What each pixel shows: class masks from files, our own segmenter and pretrained ones."""
+"""The class of each pixel: masks from files, by the built-in segmenter and by pretrained ones."""

@@ -1,6 +1,6 @@
 """The built-in segmenter: a small U-Net from features of the depth grid to a class of each cell.
 
-    13 channels a cell (about 80 x 60)                      class scores a cell
+    13 channels per cell (about 80 x 60)                    class scores per cell
       see `segmenter_features`                                   |
          |                                                       |
         32 --/2-- 48 --/2-- 80 --/2-- 128 -x2-- 80 --x2-- 48 --x2-- 32
@@ -30,7 +30,7 @@ GROUP_NAMES = tuple(group[0] for group in SEGMENTER_GROUPS)
 
 
 def group_of_classes(names: tuple[str, ...]) -> Int[Array, " name"]:
-    """The group of each class name, (name,); 0 for a class in none."""
+    """Index into SEGMENTER_GROUPS of each class name, (name,); 0 for a class in no group."""
     group = {name: index for index, members in enumerate(SEGMENTER_GROUPS) for name in members}
     return np.array([group.get(name, 0) for name in names])
 
@@ -74,7 +74,14 @@ def make_network() -> Any:
 
 
 def load_network(path: Path = WEIGHTS) -> Any:
-    """The trained network in evaluation mode. Raises InputError where its file is missing or holds something else."""
+    """Loads the trained network in evaluation mode.
+
+    Args:
+        path: Weights, by default the bundled ones.
+
+    Raises:
+        InputError: If the file is missing or holds other tensors.
+    """
     network = make_network()
     tensors, _ = read_tensors(path)
     with foreign_errors(path, "no file of weights of the built-in segmenter ({reason}); reinstall mmweaver"):
@@ -83,7 +90,15 @@ def load_network(path: Path = WEIGHTS) -> Any:
 
 
 def groups_of_cells(features: Float[Array, "13 row column"], network: Any) -> Int[Array, "row column"]:
-    """The most likely group of each cell."""
+    """The most likely group of each cell.
+
+    Args:
+        features: Result of `segmenter_features.grid_features`, (13, row, column).
+        network: Result of `load_network`.
+
+    Returns:
+        Index into SEGMENTER_GROUPS, (row, column).
+    """
     import torch
 
     with torch.inference_mode():
@@ -91,7 +106,14 @@ def groups_of_cells(features: Float[Array, "13 row column"], network: Any) -> In
 
 
 def segment_builtin(photo: RgbdPhoto) -> ClassMask:
-    """Segments a photo by the built-in network."""
+    """Segments a photo by the built-in network; needs no network access.
+
+    Args:
+        photo: Photo with depth.
+
+    Returns:
+        Class mask of the photo's size, in groups of COCO-Stuff classes.
+    """
     grid = make_grid(photo)
     groups = groups_of_cells(grid_features(grid), load_network())
     size = STRIDE * (photo.intrinsics.width // grid.intrinsics.width)  # pixels of a cell

@@ -13,11 +13,21 @@ from mmweaver.scene.coco_stuff import NAMES, UNLABELED, coco_class
 
 
 def read_class_file(path: Path, width: int, height: int) -> ClassMask:
-    """Reads an 8-bit picture of class numbers, with the photo's size (width, height) or aspect ratio.
+    """Reads an 8-bit picture of class numbers.
 
     A .json of the same name, {"1": "couch", ...}, defines the numbers by names of COCO-Stuff or ADE20K; without it
-    they are those of COCO-Stuff's pixel maps: class minus 1, 255 = unlabeled. Raises InputError where the picture is
-    not such a mask.
+    they are those of COCO-Stuff's pixel maps: class minus 1, 255 = unlabeled.
+
+    Args:
+        path: Grey or palette picture with the photo's size or aspect ratio.
+        width: Columns of the photo.
+        height: Rows of the photo.
+
+    Returns:
+        The mask at the photo's size.
+
+    Raises:
+        InputError: If the picture is not such a mask.
     """
     from PIL import Image
 

@@ -24,9 +24,18 @@ MIN_SHARE, MAX_SHARE = 1e-4, 0.6  # of the picture: a larger mask is the room it
 
 
 def segment(rgb: RgbPixels, source: str, sam: str | None = None) -> ClassMask:
-    """The classes of a picture by the model in a folder or on the Hub, refined by the SAM model `sam` if given.
+    """Segments a picture by a pretrained model.
 
-    Raises InputError where a model cannot be loaded, is not a segmenter, or has none of the known labels.
+    Args:
+        rgb: Picture, uint8, (height, width, 3).
+        source: Folder or Hub name of the model.
+        sam: Folder or Hub name of a SAM model that refines the edges; None for none.
+
+    Returns:
+        Class mask in COCO-Stuff classes.
+
+    Raises:
+        InputError: If a model cannot be loaded, is not a segmenter, or has none of the known labels.
     """
     import torch
 
@@ -43,12 +52,29 @@ def segment(rgb: RgbPixels, source: str, sam: str | None = None) -> ClassMask:
 
 
 def refined_by_sam(mask: ClassMask, rgb: RgbPixels, sam: str) -> ClassMask:
-    """The classes with the edges of SAM's masks."""
+    """Replaces the edges of a class mask by those of SAM's masks.
+
+    Args:
+        mask: Class mask.
+        rgb: Picture, uint8, (height, width, 3).
+        sam: Folder or Hub name of the SAM model.
+
+    Returns:
+        The refined mask.
+    """
     return ClassMask(index=relabelled(mask.index, sam_masks(rgb, sam)), names=mask.names)
 
 
 def sam_masks(rgb: RgbPixels, source: str) -> list[Bool[Array, "height width"]]:
-    """SAM's masks at a grid of points, the most certain one of each, the largest first."""
+    """SAM's masks prompted by a grid of points, the most certain mask of each point.
+
+    Args:
+        rgb: Picture, uint8, (height, width, 3).
+        source: Folder or Hub name of the SAM model.
+
+    Returns:
+        Masks (height, width), the largest first.
+    """
     import torch
 
     _, processor, model = load_pretrained(source, "sam", _sam_class)
@@ -73,7 +99,15 @@ def sam_masks(rgb: RgbPixels, source: str) -> list[Bool[Array, "height width"]]:
 
 
 def relabelled(index: ClassPixels, masks: list[Bool[Array, "height width"]]) -> ClassPixels:
-    """Gives each mask the class of two thirds of its pixels, if there is one; later, smaller masks overwrite."""
+    """Assigns each mask the class of two thirds of its pixels, if any; smaller masks, which come later, overwrite.
+
+    Args:
+        index: Class of each pixel, (height, width).
+        masks: Masks (height, width), the largest first.
+
+    Returns:
+        Corrected class of each pixel.
+    """
     out = index.copy()
     for mask in masks:
         counts = np.bincount(index[mask], minlength=1)

@@ -9,7 +9,7 @@ from mmweaver.scene.layout.height_map import CELL_M
 from mmweaver.scene.photo.depth_grid import DepthGrid, GridFloat
 
 # Standardised colour (3), height, slope (up . normal), 1 / depth, whether measured, proximity to a wall, membership of
-# a wall, a vertical panel, a horizontal top, a ceiling, and the height of what is above the same place of the floor.
+# a wall, a vertical panel, a horizontal top, a ceiling, and the height of what is above the same floor square.
 CHANNELS = 13
 COLOURS, MEASURED, HEIGHT, SLOPE = slice(0, 3), 6, 3, 4
 HEIGHT_UNIT_M = 2.5
@@ -21,15 +21,30 @@ Features = Float[Array, "13 row column"]
 
 
 def grid_features(grid: DepthGrid) -> Features:
-    """The 13 channels of every second row and column of a depth grid, float32; 0 where nothing was measured.
+    """Features of every second row and column of a depth grid.
 
-    Raises InputError where the depth shows no surfaces.
+    Args:
+        grid: Depth grid of a photo.
+
+    Returns:
+        The 13 channels, float32, (13, row, column); 0 where nothing was measured.
+
+    Raises:
+        InputError: If the depth shows no surfaces.
     """
     return room_features(grid, align_room(grid))
 
 
 def room_features(grid: DepthGrid, room: AlignedRoom) -> Features:
-    """The features of a grid whose aligned room is known already."""
+    """Features of a grid that is already aligned.
+
+    Args:
+        grid: Depth grid of a photo.
+        room: Result of `gravity.align_room` for this grid.
+
+    Returns:
+        The 13 channels, float32, (13, row, column).
+    """
     aligned = room.grid
     height = aligned.points_m[..., 2] - aligned.floor_z_m
     geometry = [
@@ -48,7 +63,7 @@ def room_features(grid: DepthGrid, room: AlignedRoom) -> Features:
 
 
 def _standardised(rgb: Float[Array, "row column 3"]) -> Float[Array, "3 row column"]:
-    """Colours without exposure and white balance: each less its mean, over the brightness' standard deviation."""
+    """Colours normalized for exposure and white balance: minus their mean, over the brightness' standard deviation."""
     spread = max(float(rgb.mean(axis=2).std()), 0.05)
     return np.moveaxis((rgb - rgb.mean(axis=(0, 1))) / spread, -1, 0) / 3
 

@@ -16,6 +16,7 @@ from mmweaver.motion.continuous import ContinuousMotion
 from mmweaver.motion.empty_floor import RADAR_HEIGHT_M, WINDOW_M, act_out, empty_floor
 from mmweaver.motion.language.activities import BODY, HANDS
 from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.planning.placement import Conditions
 
 FINER = 4
 MAX_STEP_MPS = 0.35
@@ -72,7 +73,7 @@ def test_no_transition_has_a_velocity_step(text: str, finer_times):
 
 
 def test_a_stream_has_no_velocity_step_across_its_parts(finer_times):
-    stream = ContinuousMotion(empty_floor(), frame_period_s=0.1, range_window_m=WINDOW_M, seed=3)
+    stream = ContinuousMotion(empty_floor(), Conditions(seed=3), frame_period_s=0.1, range_window_m=WINDOW_M)
     for text in ("runs to the left", "circles the arms", "does push-ups", "sits down", "walks to the right"):
         part = stream.act(parse(f"a person {text}"))
         assert largest_step_mps(part.pose) < MAX_STEP_MPS, text

@@ -1,1 +1,1 @@
-"""The activities, one kind a file: each writes Controls over the times of its StepContext."""
+"""The activities, one kind per file: each writes Controls over the times of its StepContext."""

@@ -15,7 +15,14 @@ for _module in pkgutil.iter_modules([str(Path(__file__).parent)]):
 
 
 def perform(act: StepContext) -> Controls:
-    """The Controls of one step at all times of its context."""
+    """Animates one step: its posture, overlaid with its gesture and that of the other hand.
+
+    Args:
+        act: Times, step, body and path.
+
+    Returns:
+        Controls at all times of the context.
+    """
     step = act.step
     with np.errstate(all="raise", under="ignore"):
         posture = POSTURES[step.lower](act)
@@ -24,7 +31,7 @@ def perform(act: StepContext) -> Controls:
         controls = GESTURES[step.upper](act, posture.copy())
         if step.other_hand is None:
             return controls
-        # The other hand's arm is added; head and trunk go with the first activity alone.
+        # Only the arm of the second activity is added; head and trunk follow the first.
         second = replace(
             step.other_hand,
             lower=step.lower,

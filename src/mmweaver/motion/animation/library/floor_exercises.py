@@ -1,7 +1,7 @@
 """On the floor: push-ups, sit-ups, crawling and forward rolls.
 
-Arms of a roll are solved from the floor while hands lie on it. Whole turns are taken out of angles once a roll is over:
-joints do not see it, and what follows begins at zero.
+Arms of a roll are solved from the floor while the hands rest on it. Whole turns are removed from angles once a roll is
+over: the joints are the same, and the following step begins at zero.
 """
 
 import numpy as np
@@ -18,10 +18,10 @@ from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 
 _UP_RAD, _DOWN_RAD = 0.32, 0.06  # of the straight body over the floor, arms stretched and bent
 _ON_TOES_RAD = 1.35  # pitch of the feet
-_TURNING_M = 0.3  # of a limb from the middle about which the body turns
-_LIFTING_S = 0.15  # within which limbs begin and end to leave the floor
-_FASTEST_TURNING_MPS = 0.35  # of limbs in a turn: before they are on the floor, people turn faster than they crawl
-_STRIDE_M, _SHIN = 0.35, 0.318  # of crawling; from the knee back to the ankle, of the height
+_TURNING_M = 0.3  # of a limb from the body's axis of rotation
+_LIFTING_S = 0.15  # over which limbs lift off and touch down
+_FASTEST_TURNING_MPS = 0.35  # of limbs in a turn, which may be faster than crawling
+_STRIDE_M, _SHIN = 0.35, 0.318  # of crawling; knee to ankle as a share of the height
 
 
 @posture("plank")
@@ -32,19 +32,19 @@ def plank(act: StepContext) -> None:
 
 @posture("push_ups", stands=False)
 def push_ups(act: StepContext) -> None:
-    """The body stays straight from the heels to the head and goes down and up on the arms; the root is at the feet."""
+    """The body stays straight from heels to head while the arms bend and extend; the root is at the feet."""
     _support_on_hands(act, _counted_cycles(act, 0.35, 0.55, 0.8, 0.3, 1.1))
 
 
 def _counted_cycles(act: StepContext, *rates_hz: float) -> PerTime:
-    """0 to 1 and back (n,) again and again; a count ends at 0. The controls are drawn after the rate."""
+    """0 to 1 and back (n,) repeatedly; a count ends at 0. The controls are sampled after the rate."""
     rate, end_s = act.cycles(*rates_hz)
     act.stand()
     return raised_cosine(2 * np.pi * rate * (np.minimum(act.time_s, end_s if act.count else np.inf) - act.start_s))
 
 
 def _support_on_hands(act: StepContext, down: PerTime) -> None:
-    """down (n,) = 0 arms stretched, 1 bent."""
+    """Support on hands and toes; `down` (n,) is 0 with straight arms, 1 with bent ones."""
     body, h, n = act.body, act.height_m, len(down)
     slope = _UP_RAD + np.minimum(act.vary(0.92, 0.05), 1.0) * down * (_DOWN_RAD - _UP_RAD)
     leg = 0.995 * (body.leg_m + body.hip_below_pelvis_m)
@@ -60,7 +60,7 @@ def _support_on_hands(act: StepContext, down: PerTime) -> None:
 
 @posture("sit_ups", stands=False)
 def sit_ups(act: StepContext) -> None:
-    """On the back, knees bent, arms crossed on the chest: the trunk curls up until it is upright, and goes down."""
+    """On the back, knees bent, arms crossed on the chest: the trunk curls up until it is upright, and down again."""
     up = _counted_cycles(act, 0.28, 0.42, 0.6, 0.25, 0.8)
     lying(act)
     act.add(up, pelvis_pitch=min(act.vary(1.2, 0.05), 1.3))
@@ -73,7 +73,7 @@ def sit_ups(act: StepContext) -> None:
 
 @posture("crawl")
 def crawling(act: StepContext) -> None:
-    """On hands and knees; a knee and the opposite hand go ahead together."""
+    """On hands and knees; a knee and the opposite hand move ahead together."""
     h, (gone_m, going) = act.height_m, _crawled(act)
     phase = 2 * np.pi / act.vary(_STRIDE_M, 0.08) * gone_m
     act.pelvis(up=0.95 * KNEELING_M * h - act.body.pelvis_height_m(STAND_STRETCH) + 0.008 * h * np.cos(2 * phase))
@@ -89,7 +89,7 @@ def crawling(act: StepContext) -> None:
 
 
 def _crawled(act: StepContext) -> tuple[PerTime, PerTime]:
-    """How far the limbs have carried the body, in metres, and 1 while it goes or turns; at an even pace on the spot."""
+    """Distance (n,) in metres by which the limbs carry the body, and 1 while it moves or turns; even on the spot."""
     time_s, path = act.time_s, act.path
     if not act.moves:
         return 0.15 * (time_s - act.start_s), np.ones_like(time_s)
@@ -102,14 +102,14 @@ def _crawled(act: StepContext) -> tuple[PerTime, PerTime]:
 
 
 _ROLL, _FEET = MOVEMENTS["forward_roll"], MOVEMENTS["forward_roll_feet"]
-AHEAD = _ROLL["ahead"][-1]  # of the height: how far on the body stands up again after a roll
+AHEAD = _ROLL["ahead"][-1]  # distance covered by a roll, as a share of the height
 UPRIGHT_AGAIN = 0.82  # share of a roll after which trunk and feet have turned once
-_HANDS = (0.46, 0.12, 0.03)  # where they lie: ahead, outward, up
+_HANDS = (0.46, 0.12, 0.03)  # their position: ahead, outward, up
 
 
 @posture("forward_roll", stands=False)
 def rolling_forward(act: StepContext) -> None:
-    """Hands on the floor, over the rounded back, and up onto the feet again, one roll after the other."""
+    """Hands on the floor, over the rounded back, and up onto the feet, one roll after the other."""
     start, end = act.path.position_m(np.array([act.start_s - 0.001, act.end_s]))
     act.path = act.standing_path()
     act.stand()
@@ -120,7 +120,7 @@ def rolling_forward(act: StepContext) -> None:
 
 
 def _roll_once(act: StepContext, share: PerTime, length_m: float, gone_m: float) -> None:
-    """One roll over `share` (n,) 0 to 1, after the body has gone `gone_m` ahead."""
+    """One roll over `share` (n,) from 0 to 1, after `gone_m` of earlier rolls."""
     h, stand = act.height_m, act.body.pelvis_height_m(STAND_STRETCH)
     stretch, whole = length_m / (AHEAD * h), 2 * np.pi * (share >= UPRIGHT_AGAIN)
     heights = [(z * h or stand) - stand for z in _ROLL["up"]]
@@ -131,7 +131,7 @@ def _roll_once(act: StepContext, share: PerTime, length_m: float, gone_m: float)
     act.add(plateau(share, 0.08, 0.95, 0.3, 0.3), spine_pitch=1.0)
     act.add(plateau(share, 0.2, 0.85, 0.18, 0.2), head_pitch=0.9)
     act.bend_knees(plateau(share, 0.0, 1.0, 0.15, 0.15))
-    # Both feet push off, go over the head with the legs, and come down together.
+    # Both feet push off, pass over the head with the legs, and land together.
     pitch = 2 * np.pi * rise((share - 0.33) / (UPRIGHT_AGAIN - 0.03 - 0.33))
     pivot = ankle_from_foot(act.body, np.zeros(len(share)), pitch) - [0.0, 0.0, act.body.ankle_height_m]
     pushing = 1 - plateau(share, _FEET["at"][0], _FEET["at"][-1], 0.05, 0.05)  # on the ball until it leaves the floor
@@ -147,7 +147,7 @@ def _roll_once(act: StepContext, share: PerTime, length_m: float, gone_m: float)
 
 
 def _put_hand_on_floor(act: StepContext, side: int, share: PerTime, gone_m: float) -> None:
-    """One hand at its place on the floor while it carries weight."""
+    """Fixes one hand on the floor while it carries weight."""
     h, heading, start = act.height_m, act.controls.heading_rad, act.path.position_m(act.time_s)
     ahead, left = _HANDS[0] * h + gone_m, OUTWARD[side] * _HANDS[1] * h
     x = start[:, 0] + ahead * np.cos(heading) - left * np.sin(heading)

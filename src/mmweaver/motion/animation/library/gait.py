@@ -1,4 +1,4 @@
-"""Walking, jogging and turning: feet planted along the root's path, the body driven by the phase of the steps."""
+"""Walking, jogging and turning: feet planted along the root's path, trunk and arms driven by the phase of the steps."""
 
 import itertools
 from collections.abc import Callable
@@ -16,8 +16,8 @@ from mmweaver.motion.animation.standing import ANKLE_BEHIND, HALF_STANCE, TOES_O
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 
 GRAVITY_MPS2 = 9.81
-SHORT_REST_S, REST_SMOOTH_S = 0.6, 0.06  # between two movements of the root, without coming to rest
-SOLE_DOWN_S = 0.07  # at the least, from the strike of the heel until the sole is flat
+SHORT_REST_S, REST_SMOOTH_S = 0.6, 0.06  # maximum rest between two movements of the root that is bridged
+SOLE_DOWN_S = 0.07  # minimum from heel strike until the sole is flat
 ELBOW_LAG = 0.15  # of a step, behind the shoulder
 NOD = 0.4  # share of the pelvis's surge that the neck does not follow
 
@@ -61,7 +61,12 @@ class Style:
 
 
 def walking_style(act: StepContext, speed_mps: float) -> Style:
-    """Gait of a walk: step rate from speed (walk ratio about 0.42 m s; longer legs step slower), the rest from it."""
+    """Gait parameters of a walk: step rate from speed (walk ratio about 0.42 m s; longer legs step slower).
+
+    Args:
+        act: Context of the step; its random stream is consumed.
+        speed_mps: Walking speed in m/s.
+    """
     rng, height_m = act.rng, act.height_m
     share = min(speed_mps / 1.3, 1.4)
     steps_hz = 1.87 * max(share, 0.25) ** 0.55 * (REFERENCE_HEIGHT_M / height_m) ** 0.5 * np.exp(rng.normal(0, 0.03))
@@ -89,7 +94,12 @@ def walking_style(act: StepContext, speed_mps: float) -> Style:
 
 
 def jogging_style(act: StepContext, speed_mps: float) -> Style:
-    """Short contacts with flight between them; the pelvis bobs so that in flight it falls freely."""
+    """Gait parameters of a jog: short contacts with flight in between, in which the pelvis falls freely.
+
+    Args:
+        act: Context of the step; its random stream is consumed.
+        speed_mps: Speed in m/s.
+    """
     steps_hz, share = act.tempo(2.35, 2.6, 2.9, 0.08), min(speed_mps / 2.0, 1.7)  # of an easy indoor jog
     vigour = np.exp(act.rng.normal(0, 0.12))
     return Style(
@@ -120,19 +130,19 @@ def standing(act: StepContext) -> None:
 
 @posture("walk", stands=False)
 def walking(act: StepContext) -> None:
-    """At the speed of the path."""
+    """Walks at the speed of the path."""
     steps_along_path(act, walking_style(act, max(cruise_mps(act), 0.7)))
 
 
 @posture("jog", stands=False)
 def jogging(act: StepContext) -> None:
-    """At the speed of the path, or on the spot."""
+    """Jogs at the speed of the path, or on the spot."""
     steps_along_path(act, jogging_style(act, cruise_mps(act)), jog=True, on_spot=act.direction == "spot")
 
 
 @posture("turn", stands=False)
 def turning(act: StepContext) -> None:
-    """Small steps on the spot; as in a slow walk."""
+    """Turns with small steps on the spot, as in a slow walk."""
     steps_along_path(act, walking_style(act, 0.9))
 
 
@@ -150,12 +160,19 @@ def marching(act: StepContext) -> None:
 
 
 def cruise_mps(act: StepContext) -> float:
-    """The highest speed of the step's moves, between their ramps, in m/s."""
+    """The highest speed of the step's moves between their ramps, in m/s; 0 without moves."""
     return max((move.speed_mps for move in act.moves), default=0.0)
 
 
 def steps_along_path(act: StepContext, style: Style, *, jog: bool = False, on_spot: bool = False) -> None:
-    """Steps along the root's path. A foot whose next position equals its last one stays planted, unless jogging."""
+    """Steps along the root's path; a foot stays planted if its next position equals the last one, except when jogging.
+
+    Args:
+        act: Context whose controls are written.
+        style: Gait parameters.
+        jog: Lifts every foot at every step, even on the spot.
+        on_spot: Steps throughout, although the root does not move.
+    """
     from scipy.interpolate import CubicSpline
 
     act.stand()
@@ -262,8 +279,8 @@ def _move_foot_along(act: StepContext, falls: list[Footfall], side: int, style: 
         if jog:
             pitch = pitch + 0.2 * bump((t - fall.off_s + 0.08) / (swing + 0.08))
         controls.foot_rad[inside, side, 1] = pitch
-        # A foot is unloaded before toe-off and fully loaded only after heel strike: so the knee is never extended at
-        # speed, and the pelvis comes down in time for the foot that is about to land.
+        # A foot is unloaded before toe-off and fully loaded only after heel strike, so that the knee never extends at
+        # speed, and the pelvis descends in time for the foot that is about to land.
         air = plateau(time_s, fall.off_s - 0.3 * swing, after.strike_s + 0.15 * swing, 0.55 * swing, 0.75 * swing)
         act.add(air, side, contact=-min(effort + float(jog), 1.0))
 
@@ -281,7 +298,7 @@ def _foot_pitch(t: PerTime, fall: Footfall, after: Footfall, style: Style, came_
 
 
 def _move_trunk_and_arms(act: StepContext, style: Style, phase: PerTime, moving: PerTime) -> None:
-    """`phase` (n,) counts steps: even at the left foot's strike, odd at the right one's."""
+    """Trunk and arms from the step phase (n,): even at the left foot's strike, odd at the right foot's."""
     controls = act.controls
     left_ahead = np.cos(np.pi * phase) * moving  # the left leg is in front at its strike
     right_stance = -np.sin(np.pi * (phase - 0.1)) * moving  # +1 over the right foot, -1 over the left one

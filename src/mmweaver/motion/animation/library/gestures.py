@@ -1,6 +1,6 @@
 """Gestures of arms, head and trunk over any posture, among them the ten arm gestures of mHomeGes (Liu et al., 2020).
 
-Each changes the controls of the posture under it; the legs are kept.
+Each changes the controls of the underlying posture; the legs are kept.
 """
 
 import numpy as np
@@ -13,7 +13,7 @@ from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture
 
 @gesture("wave")
 def waving(act: StepContext) -> None:
-    """Upper arm out and ahead, forearm up and swinging sideways; the upper arm twists, so that the hand nods."""
+    """Upper arm out and ahead, forearm up and swinging sideways; the twisting upper arm makes the hand nod."""
     rng = act.rng
     rate, end = act.cycles(1.0, 1.6, 2.2, 0.8, 2.5)
     swing = act.uniform(0.35, 0.5) * min(1.0, 1.5 / rate)
@@ -51,7 +51,7 @@ def clapping(act: StepContext) -> None:
 
 @gesture("raise")
 def raising(act: StepContext) -> None:
-    """The straight arm goes up in front or at the side, holds, and comes down at the end of the step."""
+    """The straight arm rises in front or at the side, holds, and comes down at the end of the step."""
     rng, count = act.rng, max(act.count, 1)
     each = float(min(act.duration_s / count, 6.0 if count == 1 else 3.5))
     move = float(np.clip(act.tempo(1.2, 0.85, 0.6) * min(1.0, each / 2.0), 0.42, 1.6))
@@ -69,7 +69,7 @@ def raising(act: StepContext) -> None:
 
 @gesture("drink")
 def drinking(act: StepContext) -> None:
-    """A cup in front of the belly goes to the mouth, the head tilts back for the sip, and the cup comes down."""
+    """A cup in front of the belly rises to the mouth, the head tilts back for the sip, and the cup comes down."""
     side, h = act.sides()[0], act.height_m
     sip_s = act.tempo(3.4, 2.6, 1.9)
     count = act.count or max(1, int(act.duration_s / sip_s + 0.3))
@@ -88,14 +88,14 @@ def drinking(act: StepContext) -> None:
 
 
 def _hold_arms(act: StepContext, up_s: float) -> PerTime:
-    """(n,) rises to 1 at the step's start and falls at its end, unless the arms are held so before or after it."""
+    """Weight (n,): rises at the step's start and falls at its end, unless neighbouring steps hold the same posture."""
     move, ones = min(up_s, 0.4 * act.duration_s), np.ones_like(act.time_s)
     begin = ones if act.first or act.arms_before else rise((act.time_s - act.start_s) / move)
     return begin if act.last or act.arms_after else begin * rise((act.end_s + 0.2 - act.time_s) / move)
 
 
 def _heading_rad(act: StepContext) -> float:
-    """Where the body faces during the step, whatever came before."""
+    """Median heading of the body during the step, radians."""
     meanwhile, heading = (act.time_s >= act.start_s) & (act.time_s <= act.end_s), act.controls.heading_rad
     return float(np.median(heading[meanwhile] if meanwhile.any() else heading))
 
@@ -124,7 +124,7 @@ def pointing(act: StepContext) -> None:
 
 @gesture("nod")
 def nodding(act: StepContext) -> None:
-    """The head goes down and up, again and again."""
+    """The head pitches down and up repeatedly."""
     rate, end = act.cycles(1.1, 1.6, 2.2, 1.0, 2.6)
     on = act.plateau(act.start_s, max(end, act.start_s + 0.5), 0.2, 0.2)
     act.add(raised_cosine(act.phase(rate)), head_pitch=act.uniform(0.16, 0.3) * on)
@@ -132,7 +132,7 @@ def nodding(act: StepContext) -> None:
 
 @gesture("shake_head")
 def shaking_head(act: StepContext) -> None:
-    """The head turns to one side and the other, again and again."""
+    """The head yaws to one side and the other repeatedly."""
     rate, end = act.cycles(0.9, 1.4, 2.0, 0.8, 2.2)
     on = act.plateau(act.start_s, max(end, act.start_s + 0.5), 0.25, 0.25)
     act.add(np.sin(act.phase(rate)), head_yaw=act.uniform(0.3, 0.55) * on)
@@ -140,7 +140,7 @@ def shaking_head(act: StepContext) -> None:
 
 @gesture("look_around")
 def looking_around(act: StepContext) -> None:
-    """To one side and the other, the trunk following slightly; to one side only where one is given."""
+    """Looks to one side and the other, or only to a given side, the trunk following slightly."""
     first, wide, facing = act.sign(), act.uniform(0.7, 1.0), act.facing or act.direction
     lasts = max(act.duration_s, 1.0)
     there = act.plateau(act.start_s, act.start_s + lasts, 0.3 * lasts, 0.3 * lasts)
@@ -148,7 +148,7 @@ def looking_around(act: StepContext) -> None:
         act.add(there, head_pitch=0.6)
         return
     if facing in ("left", "right"):
-        sign = -1.0 if facing == "left" else 1.0  # the viewer's side of somebody who may face anywhere
+        sign = -1.0 if facing == "left" else 1.0  # the viewer's side, whatever the body's heading
         yaw = sign * (1.0 if np.sin(_heading_rad(act)) < 0 else -1.0) * wide * there
     else:
         at = [act.start_s + share * lasts for share in (0.0, 0.25, 0.4, 0.7, 0.82, 1.0)]
@@ -173,7 +173,7 @@ def hands_on_hips(act: StepContext) -> None:
 
 @gesture("shrug")
 def shrugging(act: StepContext) -> None:
-    """Forearms turn out and up, the head tilts to one side, and all drops again."""
+    """Forearms turn out and up, the head tilts to one side, and all return."""
     tilt = float(act.sign() * act.rng.uniform(0.05, 0.15))
     for span in act.repeats(1.2, 0.9, 1.8):
         up = span.plateau(0, 1, 0.35, 0.4)
@@ -183,7 +183,7 @@ def shrugging(act: StepContext) -> None:
 
 @gesture("arms_out")
 def arms_out(act: StepContext) -> None:
-    """Straight arms held out: to the sides (as in a T), or ahead where the sentence says so."""
+    """Straight arms held out: to the sides (as in a T), or ahead if stated."""
     tired = 0.03 * act.wander(0.2, 0.9)
     for side in act.named_arms:
         arm = np.zeros((len(tired), 4))
@@ -196,7 +196,7 @@ def arms_out(act: StepContext) -> None:
 
 @gesture("stretch")
 def stretching(act: StepContext) -> None:
-    """Both arms go up, the back arches, then the trunk leans to one side and the other, and the arms come down."""
+    """Both arms rise, the back arches, then the trunk leans to one side and the other, and the arms come down."""
     span = act.repeats(3.0, 1.7, 4.5)[0]
     up, peak = span.plateau(0, 1, 0.33, 0.33), span.plateau(0.2, 0.85, 0.2, 0.2)
     act.arm((act.uniform(2.75, 3.0), 0.15, 0.0, 0.2), up)
@@ -208,7 +208,7 @@ def stretching(act: StepContext) -> None:
 
 @gesture("arm_circles")
 def circling_arms(act: StepContext) -> None:
-    """Stretched arms go round at the sides: forward, up, back, down."""
+    """Straight arms circle at the sides: forward, up, back, down."""
     rate, end = act.cycles(0.5, 0.8, 1.1, 0.5, 1.2)
     lasts = max(end - act.start_s, 0.8)
     ramp = min(0.5, 0.4 / lasts)
@@ -220,7 +220,7 @@ def circling_arms(act: StepContext) -> None:
 
 
 def _once(act: StepContext, slow: float, usual: float, fast: float) -> PerTime:
-    """0 to 1 (n,) within a sampled time from just after the start, and then 1: a gesture that stays where it ends."""
+    """0 to 1 (n,) within a sampled time shortly after the start, then 1: a gesture that holds its final position."""
     lasts = float(np.clip(1 / act.tempo(1 / slow, 1 / usual, 1 / fast), 0.45, 0.9 * act.duration_s))
     wait = float(np.clip(act.rng.uniform(0.05, 0.3), 0.0, 0.2 * act.duration_s))
     return np.asarray(rise((act.time_s - act.start_s - wait) / lasts))
@@ -228,17 +228,18 @@ def _once(act: StepContext, slow: float, usual: float, fast: float) -> PerTime:
 
 @gesture("raise_hold")
 def raising_and_holding(act: StepContext) -> None:
-    """The straight arm is lifted ahead, straight up, and stays above the head; at once where it was there before."""
+    """The straight arm is lifted ahead to above the head and stays there; at once if it was there before."""
     _lift_arm(act, np.ones_like(act.time_s) if act.arms_before else _once(act, 1.6, 1.0, 0.65))
 
 
 @gesture("lower_arm")
 def lowering(act: StepContext) -> None:
-    """The straight arm is above the head, falls straight down and stays down."""
+    """The straight arm starts above the head, falls straight down and stays down."""
     _lift_arm(act, 1 - _once(act, 1.4, 0.85, 0.55))
 
 
 def _lift_arm(act: StepContext, up: PerTime) -> None:
+    """Arm between hanging (0) and overhead (1), by `up` (n,)."""
     top, bent = act.uniform(2.75, 3.0), act.uniform(0.05, 0.2)
     for side in act.sides():
         arm = act.controls.arm_rad[:, side].copy()
@@ -251,7 +252,7 @@ def _lift_arm(act: StepContext, up: PerTime) -> None:
 
 @gesture("push_hand")
 def pushing_hand(act: StepContext) -> None:
-    """The hand before the chest, palm forward, is stretched ahead, and the arm stays straight."""
+    """The hand before the chest, palm forward, is pushed ahead, and the arm stays straight."""
     _stretch_arm(act, _once(act, 1.1, 0.6, 0.45))
 
 
@@ -262,7 +263,7 @@ def pulling_hand(act: StepContext) -> None:
 
 
 def _stretch_arm(act: StepContext, out: PerTime) -> None:
-    """A hand between the chest (0) and as far ahead as it reaches (1); the shoulder goes along."""
+    """A hand between the chest (0) and full reach ahead (1); the shoulder follows."""
     near, far = np.array([0.09, 0.06, 0.03]), np.array([0.297, 0.08, 0.07])
     for side in act.sides():
         act.hand_to(side, near + out[:, None] * (far - near))
@@ -271,7 +272,7 @@ def _stretch_arm(act: StepContext, out: PerTime) -> None:
 
 @gesture("draw_circle")
 def drawing_circle(act: StepContext) -> None:
-    """The straight arm draws large circles, clockwise for the person: from hanging across the body, up and round."""
+    """The straight arm draws large circles, clockwise for the person, from hanging across the body, up and around."""
     count = act.count or max(1, round(act.duration_s / 2.5))
     spans = act.repeats(act.duration_s / count * 0.9, 0.9, 4.0)[:count]
     angle = 2 * np.pi * np.sum([rise(span.progress()) for span in spans], axis=0)
@@ -280,16 +281,16 @@ def drawing_circle(act: StepContext) -> None:
 
 @gesture("draw_z")
 def drawing_z(act: StepContext) -> None:
-    """The straight arm draws a large Z before the body: across, down to the other side, and across again."""
+    """The straight arm draws a large Z in front of the body: across, down to the other side, and across again."""
     span, at = act.repeats(0.85 * act.duration_s, 1.1, 3.5)[0], (0.0, 0.3, 0.65, 1.0)
     aside = span.keys(at, [-1.0, 1.0, -1.0, 1.0]) * -OUTWARD[act.sides()[0]]
     _draw(act, aside, span.keys(at, [1.0, 1.0, -1.0, -1.0]), 0.17)
 
 
 def _draw(act: StepContext, aside: PerTime, up: PerTime, half: float) -> None:
-    """The hand of the straight arm at a place of a drawing: to the person's right and up, from -1 to 1 times `half`.
+    """Moves the hand of the straight arm in a plane: to the person's right and up, from -1 to 1 times `half`.
 
-    Across the body the arm passes before it.
+    Across the body the arm passes in front of it.
     """
     size = act.vary(half, 0.12)
     on = rise((act.time_s - act.start_s + 0.4) / 0.5) if not act.first else np.ones_like(aside)
@@ -297,19 +298,19 @@ def _draw(act: StepContext, aside: PerTime, up: PerTime, half: float) -> None:
     out = -OUTWARD[side] * aside
     ahead = np.sqrt(larger(0.28**2 - size**2 * (out**2 + up**2), 0.06**2, 0.01))
     ahead += 0.08 * (np.hypot(out, 0.3) - out) / 2
-    # an elbow that pointed down would jump where the arm of a circle points down, too
+    # an elbow pointing down would be singular where the arm itself points down
     act.hand_to(side, (ahead, 0.09 + size * out, 0.07 + size * up), on)
 
 
 @gesture("swipe")
 def swiping(act: StepContext) -> None:
-    """The hand is raised before the chest, sweeps through the air to one side, up or down, and comes back."""
+    """The hand is raised before the chest, sweeps to one side, up or down, and returns."""
     swipes = act.repeats(1.1, 0.5, 1.6)
     stroke = np.sum([rise((u - 0.3) / 0.3) - rise((u - 0.65) / 0.35) for u in map(Span.progress, swipes)], axis=0)
     first, last = swipes[0], swipes[-1]
     on = act.plateau(first.begin_s, last.at(1), 0.3 * first.lasts_s, 0.3 * last.lasts_s)
     along, side = act.vary(0.13, 0.12) * (2 * stroke - 1), act.sides()[0]
-    outward = 1.0 if act.direction == ("right" if side == RIGHT else "left") else -1.0  # inward where no side is named
+    outward = 1.0 if act.direction == ("right" if side == RIGHT else "left") else -1.0  # inward if no side is named
     vertical = {"up": 1.0, "down": -1.0}.get(act.style, 0.0)
     out = 0.05 + (0.0 if vertical else outward) * along
     act.hand_to(side, (0.27 - 0.5 * np.square(along), out, -0.02 + vertical * along), on)
@@ -317,7 +318,7 @@ def swiping(act: StepContext) -> None:
 
 @gesture("yawn")
 def yawning(act: StepContext) -> None:
-    """The hand goes to the mouth and stays, the head tilts back and the body leans."""
+    """The hand covers the mouth and stays, the head tilts back and the body leans."""
     up = _once(act, 1.5, 1.0, 0.7)
     act.add(up, head_pitch=-act.vary(0.22), spine_pitch=-act.vary(0.08, 0.3))
     side = act.sides()[0]
@@ -327,7 +328,7 @@ def yawning(act: StepContext) -> None:
 
 @gesture("knock_elbow")
 def knocking_from_elbow(act: StepContext) -> None:
-    """The hand at the side is raised from the elbow and lowered, without a pause between."""
+    """The hand at the side is raised from the elbow and lowered, without a pause."""
     count = act.count or max(1, round(act.duration_s / 1.2))
     spans = act.repeats(min(1.0, 0.95 * act.duration_s / count), 0.45, 1.6)[:count]
     up = sum_plateaus(spans, 0, 1, 0.5, 0.5)

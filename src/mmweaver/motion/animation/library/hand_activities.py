@@ -1,4 +1,4 @@
-"""What hands do in front of the body and in a house: eating, typing, phoning, wiping, instruments, doors, brooms."""
+"""Activities of the hands in front of the body and in a home: eating, typing, phoning, instruments, doors, brooms."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture
 
 @gesture("eat")
 def eating(act: StepContext) -> None:
-    """From a plate in front of the belly to the mouth and back, again and again; the head meets the hand."""
+    """From a plate in front of the belly to the mouth and back repeatedly; the head meets the hand."""
     side, spans = act.one_side(), act.in_turn(act.tempo(2.6, 2.0, 1.5), 1.2, 3.6, lag=0.08, more=0.4)
     lift = sum_plateaus(spans, 0, 0.86, 0.34, 0.36)
     act.add(1, head_pitch=0.12 + 0.1 * lift, spine_pitch=0.06)
@@ -22,7 +22,7 @@ def eating(act: StepContext) -> None:
 
 @gesture("type")
 def typing(act: StepContext) -> None:
-    """Both hands over a keyboard: movements of centimetres, fast and irregular, with pauses."""
+    """Both hands over a keyboard: fast, irregular movements of centimetres, with pauses."""
     busy = 0.6 + 0.4 * np.tanh(2 * act.wander(0.15, 0.6))
     tap_hz = act.tempo(2.2, 3.2, 4.2)
     for side in BOTH:
@@ -53,7 +53,7 @@ def phoning(act: StepContext) -> None:
 
 @gesture("text")
 def texting(act: StepContext) -> None:
-    """A phone in one or both hands in front of the chest, head down; thumbs move the wrists by millimetres."""
+    """A phone in one or both hands in front of the chest, head down; the thumbs move the wrists by millimetres."""
     hands = act.sides() if act.hand else (BOTH if act.rng.random() < 0.5 else (RIGHT,))
     for side in hands:
         act.hand_to(side, (0.15, 0.022, 0.0 + 0.0015 * act.wander(1.5, 4.0)))
@@ -61,7 +61,7 @@ def texting(act: StepContext) -> None:
 
 @gesture("count_fingers")
 def counting_on_fingers(act: StepContext) -> None:
-    """One hand is held open before the chest, the other taps at its fingers, one after the other."""
+    """One hand is held open before the chest, the other taps its fingers one after the other."""
     tapping = act.one_side()
     rate_hz, end_s = act.cycles(1.1, 1.5, 2.0, 0.8, 2.4)
     away = raised_cosine(act.phase(rate_hz)) * rise((end_s - act.time_s) / 0.3 + 1.0)
@@ -72,7 +72,7 @@ def counting_on_fingers(act: StepContext) -> None:
 
 @gesture("brush_teeth")
 def brushing_teeth(act: StepContext) -> None:
-    """A hand in front of the mouth moves to and fro by a few centimetres, three times per second."""
+    """A hand in front of the mouth oscillates by a few centimetres, about three times per second."""
     side, phase = act.one_side(), act.phase(act.tempo(2.0, 2.8, 3.6))
     stroke = np.sin(phase + act.rng.uniform(0, 2 * np.pi)) * act.vary(0.011)
     drift = act.wander(0.1, 0.4)
@@ -91,7 +91,7 @@ def combing(act: StepContext) -> None:
 
 @gesture("wipe")
 def wiping(act: StepContext) -> None:
-    """Over a table ahead: to and fro or in circles, with shoulder and trunk."""
+    """Wipes a table ahead, to and fro or in circles, with shoulder and trunk."""
     side, rate = act.one_side(), act.tempo(0.6, 0.95, 1.4)
     across, ahead = np.sin(act.phase(rate)), np.cos(act.phase(rate))
     wide = act.vary(0.075) * min(1.0, 1.0 / rate)
@@ -103,7 +103,7 @@ def wiping(act: StepContext) -> None:
 
 @gesture("write")
 def writing(act: StepContext) -> None:
-    """On a board at head height (standing) or a table: small strokes along a line."""
+    """Writes on a board at head height (standing) or on a table: small strokes along a line."""
     side = act.one_side()
     stroke, other = act.wander(1.2, 2.4), act.wander(1.2, 2.4)
     line = ((act.time_s - act.start_s) / 4.0) % 1.0
@@ -138,7 +138,7 @@ def knocking(act: StepContext) -> None:
 
 @gesture("open_door")
 def opening_door(act: StepContext) -> None:
-    """The hand reaches for a handle, turns it, and pulls the door past the side of the body, one foot stepping back."""
+    """The hand reaches for a handle, turns it, and pulls the door past the body, one foot stepping back."""
     h, side, span = act.height_m, act.one_side(), act.repeats(2.2, 1.6, 3.2)[0]
     press = span.plateau(0.28, 0.62, 0.1, 0.1)
     draw = rise((act.time_s - span.begin_s - 0.4 * span.lasts_s) / (0.4 * span.lasts_s))
@@ -147,7 +147,7 @@ def opening_door(act: StepContext) -> None:
     act.add(span.plateau(0.4, 1.05, 0.35, 0.3), spine_yaw=OUTWARD[side] * 0.25)
     if act.step.lower != "stand":
         return
-    # The foot on the door's side steps back, the weight goes with it, and both return.
+    # The foot on the door's side steps back, the weight follows, and both return.
     begin, end = span.at(0.36), span.at(1.02)
     step = end - begin
     gone = act.plateau(begin, end, 0.34 * step, 0.34 * step)
@@ -160,7 +160,7 @@ def opening_door(act: StepContext) -> None:
 
 @gesture("guitar")
 def playing_guitar(act: StepContext) -> None:
-    """One hand strums in front of the belly, the other holds the neck; left-handed only if the sentence says so."""
+    """One hand strums in front of the belly, the other holds the neck; left-handed only if stated."""
     time_s, side, rate = act.time_s, act.named_side, act.tempo(1.4, 2.1, 2.9)
     strum = np.sin(act.phase(rate)) * (0.8 + 0.2 * np.sin(2 * np.pi * 0.4 * time_s))
     wide = act.vary(0.028) * min(1.0, 2.0 / rate)
@@ -193,7 +193,7 @@ def sweeping(act: StepContext) -> None:
 
 @gesture("vacuum")
 def vacuuming(act: StepContext) -> None:
-    """One hand pushes the nozzle ahead and draws it back; the trunk and the weight go with it."""
+    """One hand pushes the nozzle ahead and pulls it back; trunk and weight follow."""
     rate, _ = act.cycles(0.35, 0.5, 0.75, 0.25, 1.0)
     out, side = raised_cosine(act.phase(rate)), act.sides()[0]
     act.add(1, spine_pitch=0.22 + 0.2 * out, spine_yaw=0.15 * np.sin(act.phase(0.12)), head_pitch=0.2)
@@ -202,7 +202,7 @@ def vacuuming(act: StepContext) -> None:
 
 @gesture("jacket_off")
 def taking_jacket_off(act: StepContext) -> None:
-    """Both hands open the jacket at the chest and pull it back over the shoulders; one sleeve comes off, the other."""
+    """Both hands open the jacket at the chest and pull it back over the shoulders; the sleeves come off one by one."""
     span = act.repeats(0.92 * act.duration_s, 2.0, 6.0)[0]
     first = act.sides()[0]
     for side in BOTH:
@@ -214,7 +214,7 @@ def taking_jacket_off(act: StepContext) -> None:
 
 @gesture("cough")
 def coughing(act: StepContext) -> None:
-    """A hand before the mouth; two or three jerks of the trunk, a pause, and again."""
+    """A hand before the mouth; two or three jerks of the trunk, a pause, repeated."""
     jerk, begin = np.zeros_like(act.time_s), act.start_s + 0.35
     fits = act.count or max(1, int(act.duration_s / 2.2))
     for k in range(fits):
@@ -234,17 +234,17 @@ def _raised(act: StepContext) -> PerTime:
 
 @gesture("breathe")
 def breathing_deeply(act: StepContext) -> None:
-    """The chest rises and falls visibly, about twelve times a minute; the shoulders and the head go with it."""
+    """The chest rises and falls visibly, about twelve times per minute; shoulders and head follow."""
     rate, _ = act.cycles(0.13, 0.2, 0.32, 0.1, 0.5)
     act.add(raised_cosine(act.phase(rate)), spine_pitch=-act.vary(0.09, 0.2), head_pitch=-0.05, abduction=0.06)
 
 
 @gesture("tremble")
 def trembling(act: StepContext) -> None:
-    """Arms drawn to the chest; they shake six to nine times per second in bouts, and the trunk and the head with them.
+    """Arms drawn to the chest shake six to nine times per second in bouts, and trunk and head with them.
 
     Rates as of shivering and of enhanced physiological tremor (6 to 12 Hz; Deuschl et al., "Consensus statement of the
-    Movement Disorder Society on tremor", 1998); some 1 cm at the hands.
+    Movement Disorder Society on tremor", 1998); about 1 cm at the hands.
     """
     on, phase = _raised(act), act.phase(act.tempo(6.0, 7.5, 9.0))
     bout = on * np.clip(0.65 + 0.35 * act.wander(0.2, 0.7), 0.2, 1.2)

@@ -16,32 +16,51 @@ LAUNCH_S, CATCH_S = 0.26, 0.3  # of a leap: acceleration before take-off, decele
 
 @dataclass(frozen=True, kw_only=True)
 class Hop:
-    """One flight: the pelvis takes off and lands at the same height and rises by `rise_m` in between."""
+    """One flight: the pelvis takes off and lands at the same height.
+
+    Attributes:
+        off_s: Time of take-off in seconds.
+        rise_m: Rise of the pelvis in between, metres.
+    """
 
     off_s: float
     rise_m: float
 
     @property
     def speed_mps(self) -> float:
-        """Upward speed at take-off."""
+        """Upward speed at take-off in m/s."""
         return float(np.sqrt(2 * GRAVITY_MPS2 * self.rise_m))
 
     @property
     def flight_s(self) -> float:
-        """Time in the air."""
+        """Time of flight in seconds."""
         return 2 * self.speed_mps / GRAVITY_MPS2
 
     @property
     def land_s(self) -> float:
-        """Time of landing."""
+        """Time of landing in seconds."""
         return self.off_s + self.flight_s
 
     def progress(self, time_s: PerTime) -> PerTime:
-        """0 until take-off, 1 from landing on, smooth between."""
+        """Progress of the flight.
+
+        Args:
+            time_s: Times (n,) in seconds.
+
+        Returns:
+            0 until take-off, 1 after landing, smooth in between, (n,).
+        """
         return rise((time_s - self.off_s) / self.flight_s)
 
     def sole_m(self, time_s: PerTime) -> PerTime:
-        """Height (n,) of the soles in metres: they follow the pelvis, accelerating and decelerating within `ramp`."""
+        """Height of the soles, which follow the pelvis and accelerate and decelerate within a short ramp.
+
+        Args:
+            time_s: Times (n,) in seconds.
+
+        Returns:
+            Metres above the floor (n,).
+        """
         from scipy.interpolate import CubicSpline
 
         ramp = min(0.07, 0.3 * self.flight_s)
@@ -52,7 +71,16 @@ class Hop:
         return np.where((time_s > self.off_s) & (time_s < self.land_s), height(np.clip(time_s, fine[0], fine[-1])), 0.0)
 
     def toes_down(self, time_s: PerTime, before_s: float, after_s: float) -> PerTime:
-        """Plantar flexion (n,): heels rise before take-off and come down after landing; largest early in flight."""
+        """Plantar flexion: heels rise before take-off and come down after landing.
+
+        Args:
+            time_s: Times (n,) in seconds.
+            before_s: Time before take-off at which the heels begin to rise.
+            after_s: Time after landing at which they are down.
+
+        Returns:
+            0 to 1 (n,), largest early in flight.
+        """
         up = rise((time_s - self.off_s + before_s) / (before_s + 0.35 * self.flight_s))
         half = 0.5 * rise((time_s - self.off_s - 0.35 * self.flight_s) / (0.6 * self.flight_s))
         down = 0.5 * rise((time_s - self.land_s + 0.03) / (after_s + 0.03))
@@ -62,10 +90,17 @@ class Hop:
 def hop_all(
     act: StepContext, hops: list[Hop], dips_m: list[tuple[float, float, float]], ready_m: float, heels: float = 0.95
 ) -> None:
-    """Writes pelvis height, soles, heels and contact of hops with dips (time, depth, upward acceleration) in between.
+    """Writes pelvis height, soles, heels and contact of a sequence of hops.
 
     Take-off and landing are `ready_m` above the standing height: heels up, knees not quite straight, so that the
-    soles can take up the pelvis's speed within hundredths of a second.
+    soles can match the pelvis's speed within hundredths of a second.
+
+    Args:
+        act: Context whose controls are written.
+        hops: Flights in temporal order.
+        dips_m: Time in seconds, depth in metres and upward acceleration in m/s2 of the crouches in between.
+        ready_m: Height of the pelvis at take-off and landing above standing, metres.
+        heels: Amplitude of the foot pitch in radians.
     """
     time_s, controls = act.time_s, act.controls
     stand = act.body.pelvis_height_m(STAND_STRETCH)
@@ -85,7 +120,7 @@ def hop_all(
 @posture("jump", stands=False)
 def jumping(act: StepContext) -> None:
     """Jumps on the spot: crouch with the arms back, take off, flight, soft landing, then the next jump or rest."""
-    # People who keep jumping mostly hop from the ankles, twice a second, with quiet arms.
+    # Continuous jumping is mostly hopping from the ankles, twice per second, with quiet arms.
     keeps_hopping = not act.count and act.duration_s > 1.8 and act.rng.random() < 0.5
     act.stand()
     (hopping if keeps_hopping else _jumps)(act)
@@ -100,7 +135,7 @@ def hopping(act: StepContext) -> None:
 
 @posture("hop_one_leg")
 def hopping_on_one_leg(act: StepContext) -> None:
-    """The other leg stays lifted behind; the body leans over the leg that hops."""
+    """The other leg stays lifted behind; the body leans over the hopping leg."""
     side = 1 - act.leg_side() if act.foot else int(act.rng.integers(2))
     ready_s, h, time_s, controls = 0.55, act.height_m, act.time_s, act.controls
     start_s = act.start_s - ready_s * act.first
@@ -124,7 +159,7 @@ def _bounce(act: StepContext, start_s: float, lasts_s: float, *, size: float = 1
     count = act.count or max(1, round((lasts_s - 0.45) * rate))
     period = float(np.clip((lasts_s - 0.45) / count, 0.4, 0.62)) if act.count else 1 / rate
     high = act.uniform(0.025, 0.085) * size
-    high = 0.06 + 0.5 * high if act.moves else high  # flights that carry the body over the floor are longer
+    high = 0.06 + 0.5 * high if act.moves else high  # flights that cover distance are longer
     ground, first = period - Hop(off_s=0.0, rise_m=high).flight_s, start_s + 0.3
     hops = [Hop(off_s=first + k * period, rise_m=high) for k in range(count)]
     dips = [(first - 0.3, 0.0, 0.0)]
@@ -133,19 +168,19 @@ def _bounce(act: StepContext, start_s: float, lasts_s: float, *, size: float = 1
     hop_all(act, hops, dips, ready_m=-0.04, heels=0.8)
     if act.moves:
         _go_along(act, start_s, hops)
-    # Hops are never quite vertical: the trunk swings to and fro with each.
+    # Hops are never exactly vertical: the trunk swings with each.
     turn = 2 * np.pi * (act.time_s - first) / period + act.rng.uniform(0, 2 * np.pi)
     act.pelvis(act.uniform(0.0, 0.018) * np.sin(turn))
 
 
 def _carried(since_launch_s: PerTime, flight_s: float) -> PerTime:
-    """Share (n,) of a way that the pelvis has covered: accelerating on the floor, uniform in flight, then braking."""
+    """Share (n,) of a distance covered by the pelvis: accelerating on the floor, uniform in flight, then braking."""
     whole_s = LAUNCH_S + flight_s + CATCH_S
     return travel(np.clip(since_launch_s / whole_s, 0, 1), LAUNCH_S / whole_s, CATCH_S / whole_s)
 
 
 def _go_along(act: StepContext, start_s: float, hops: list[Hop]) -> None:
-    """Feet go along the step's way in flight, an equal part with each hop; the pelvis evenly from first to last."""
+    """Feet follow the step's path in flight, an equal part per hop; the pelvis moves evenly from first to last."""
     time_s, path, controls, (move,) = act.time_s, act.path, act.controls, act.moves
     before_s = np.array([start_s - 0.001])
     start_m, heading_rad = path.position_m(before_s)[0], float(path.facing_rad(before_s)[0])
@@ -238,7 +273,7 @@ def jumping_jacks(act: StepContext) -> None:
 def squatting(act: StepContext) -> None:
     """On feet wider than the hips, down until the knees are flexed by about 115 degrees, and up again.
 
-    Depth, stance and pace are near those of the first subject of MARS; arms go forward for balance.
+    Depth, stance and pace are near those of the first subject of MARS; the arms move forward for balance.
     """
     rng, body, h = act.rng, act.body, act.height_m
     spans = act.in_turn(1 / act.tempo(0.3, 0.38, 0.6), 1.05, 3.6, fewest=act.fewest)

@@ -1,7 +1,7 @@
-"""Legs on the spot: kicks, raised legs, balancing, lunges, stairs, crouching, yoga, exercises of rehabilitation.
+"""Legs on the spot: kicks, raised legs, balancing, lunges, stairs, crouching, yoga, rehabilitation exercises.
 
-Those of rehabilitation are of MARS (An and Ogras, 2021). How far the joints go was chosen by hand, that of side lunges,
-squats and front lunges after a look at its first subject (studies/motion/mars_exercises.py).
+The latter are those of MARS (An and Ogras, 2021). The ranges of the joints were chosen by hand; those of side lunges,
+squats and front lunges after inspection of its first subject (studies/motion/mars_exercises.py).
 """
 
 import numpy as np
@@ -48,13 +48,13 @@ def roundhouse(act: StepContext) -> None:
 
 @posture("side_kick", stands=False)
 def side_kick(act: StepContext) -> None:
-    """The knee comes up, then the foot shoots out to the own side, the trunk leaning away from it."""
+    """The knee comes up, then the foot shoots out to its own side, the trunk leaning away from it."""
     high = act.uniform(0.3, 0.42)
     _kick_turned(act, "side_kick", (0.0, 0.08, 0.25, high, 0.95 * high, 0.22, 0.0), 0.3)
 
 
 def _kick_turned(act: StepContext, movement: str, ups: tuple[float, ...], turn_rad: float) -> None:
-    """A kick over the standing foot, which turns; the kicking foot goes through heights `ups`."""
+    """A kick over the standing foot, which turns; the kicking foot passes through heights `ups`."""
     act.stand()
     h, side = act.height_m, act.leg_side()
     away = -OUTWARD[side]  # the sign of a turn towards the standing leg
@@ -66,7 +66,7 @@ def _kick_turned(act: StepContext, movement: str, ups: tuple[float, ...], turn_r
         act.lean_over(1 - side, over)
         act.lift_weight(side, span.plateau(0, 1, 0.16, 0.16))
         act.pelvis(up=-0.014 * h * over)
-        turn = away * turn_rad  # the way of the foot was given before the turn
+        turn = away * turn_rad  # the path of the foot is specified before the turn
         act.add(swing, heading=turn, foot_yaw=turn, pelvis_roll=-away * 0.5, spine_roll=-away * 0.3)
         act.add(swing, head_yaw=-away * min(turn_rad, 1.0))
         act.add(swing, side, foot_pitch=0.75)
@@ -89,7 +89,7 @@ def stamping(act: StepContext) -> None:
 
 @posture("raise_leg")
 def raising_leg(act: StepContext) -> None:
-    """The knee comes up in front until the thigh is about level, and goes down again."""
+    """The knee rises in front until the thigh is about level, and comes down again."""
     side, high = act.leg_side(), act.uniform(0.16, 0.24)
     for span in act.repeats(max(1.9, min(act.duration_s / max(act.count, 1), 4.0)), 1.2, 4.5):
         move = min(0.42 * span.lasts_s, 0.95)
@@ -110,7 +110,7 @@ def _lift_leg(act: StepContext, side: int, share: PerTime, high: float) -> None:
 
 @posture("one_leg")
 def balancing(act: StepContext) -> None:
-    """Balancing on one leg, the arms out and never quite still."""
+    """Balancing on one leg, the arms out and never entirely still."""
     time_s, rng = act.time_s, act.rng
     side = 1 - act.leg_side() if act.foot else int(rng.integers(2))
     begin = float(time_s[0] - 2.0) if act.first else act.start_s
@@ -129,7 +129,7 @@ def balancing(act: StepContext) -> None:
 def lunging(act: StepContext) -> None:
     """A long step ahead with one leg, down until the thigh is nearly level, and back.
 
-    A front lunge leaves the leg behind straight and goes less deep, again and again; half of those who do it keep both
+    A front lunge leaves the leg behind straight and goes less deep, again and again; half of the subjects keep both
     feet where they are in between, and many turn to the side of the leg ahead, as the first subject of MARS does.
     """
     h, side, is_front = act.height_m, act.leg_side(), act.style == "frontlunge"
@@ -157,7 +157,7 @@ def lunging(act: StepContext) -> None:
 
 
 def _lunge_between_planted_feet(act: StepContext, spans: list[Span], side: int, long_m: float, deep_m: float) -> None:
-    """One step ahead; then the weight goes from between the feet over the leg ahead, again and again, and back."""
+    """One step ahead; then the weight shifts from between the feet over the front leg repeatedly, and back."""
     step_s = min(0.6, 0.15 * act.duration_s)
     gone = act.plateau(act.start_s, act.end_s, step_s, step_s)
     air = sum(act.plateau(at, at + step_s, 0.5 * step_s, 0.5 * step_s) for at in (act.start_s, act.end_s - step_s))
@@ -172,7 +172,7 @@ def _lunge_between_planted_feet(act: StepContext, spans: list[Span], side: int, 
 
 @posture("crouch")
 def crouching(act: StepContext) -> None:
-    """Down into a deep crouch, and staying there."""
+    """Down into a deep crouch, which is held."""
     down = rise((act.time_s - act.start_s) / min(1.2, 0.8 * act.duration_s))
     if not act.last:
         down = down * rise((act.end_s + 0.3 - act.time_s) / 0.9)
@@ -182,7 +182,7 @@ def crouching(act: StepContext) -> None:
 
 @posture("stairs")
 def stepping_up_and_down(act: StepContext) -> None:
-    """On the spot, up a stair of 17 cm that is not there and backwards down again, one foot after the other."""
+    """On the spot, up an imaginary stair of 17 cm and backwards down again, one foot after the other."""
     h, first = act.height_m, act.leg_side()
     rate, _ = act.cycles(0.33, 0.45, 0.62, 0.25, 0.8)
     share = 4.0 * rate * (act.time_s - act.start_s)  # a foot moves in each quarter of a cycle
@@ -209,7 +209,7 @@ def _hold_pose(act: StepContext, into_s: float) -> PerTime:
 
 @posture("tree_pose")
 def tree_pose(act: StepContext) -> None:
-    """One foot against the other leg's knee, that knee out to the side, palms together over the head."""
+    """One foot against the other leg's knee, that knee out to the side, palms together above the head."""
     h, side, held = act.height_m, act.leg_side(), _hold_pose(act, 1.6)
     act.lean_over(1 - side, reached(2.0 * held))
     act.lift_weight(side, reached(3.0 * held))
@@ -234,7 +234,7 @@ def warrior_pose(act: StepContext) -> None:
 
 @posture("downward_dog")
 def downward_dog(act: StepContext) -> None:
-    """Hands and feet on the floor, the hips high: the body is a roof."""
+    """Hands and feet on the floor, hips high: the body forms an inverted V."""
     h, held = act.height_m, _hold_pose(act, 1.5)
     act.pelvis(0.27 * h * held, 0.0, -0.07 * h * held)
     act.add(held, pelvis_pitch=2.05, spine_pitch=0.1, head_pitch=0.1, foot_pitch=0.35)
@@ -243,7 +243,7 @@ def downward_dog(act: StepContext) -> None:
 
 
 def _there_and_back(act: StepContext, usual_s: float, min_s: float, max_s: float) -> PerTime:
-    """0 to 1 and back (n,), as often as asked for or as the time allows, each a little different and with a hold."""
+    """0 to 1 and back (n,), as often as stated or as time permits, each slightly different and with a hold."""
     ramp = 0.5 * (1 - act.uniform(0.05, 0.3))
     spans = act.in_turn(usual_s, min_s, max_s)
     return np.sum([act.vary(1.0, 0.06) * span.plateau(0, 0.98, ramp, ramp) for span in spans], axis=0)
@@ -251,9 +251,9 @@ def _there_and_back(act: StepContext, usual_s: float, min_s: float, max_s: float
 
 @posture("side_lunge")
 def side_lunging(act: StepContext) -> None:
-    """From a wide stance the weight goes over one bent knee; the arms are held out to the sides."""
+    """From a wide stance the weight shifts over one bent knee; the arms are held out to the sides."""
     h, side, down = act.height_m, act.leg_side(), _there_and_back(act, 3.0, 1.4, 5.0)
-    half = act.vary(0.1, 0.12) * h  # how much wider each foot stands
+    half = act.vary(0.1, 0.12) * h  # widening of the stance per foot
     for foot in BOTH:
         act.move_foot(foot, out=half)
         act.add(1, foot, foot_yaw=OUTWARD[foot] * 0.25)
@@ -268,7 +268,7 @@ def side_lunging(act: StepContext) -> None:
 
 @posture("limb_extension")
 def limb_extension(act: StepContext) -> None:
-    """One leg goes out to the side, straight, and the arm of the same side up; then both come back."""
+    """One straight leg moves out to the side and the arm of the same side up; then both return."""
     side, up, leg_m = act.leg_side(), _there_and_back(act, 2.8, 1.3, 4.5), act.body.leg_m
     angle, over = act.vary(0.62, 0.2) * up, reached(2.5 * up)
     act.lean_over(1 - side, over)
@@ -282,7 +282,7 @@ def limb_extension(act: StepContext) -> None:
 
 @gesture("arm_extension")
 def arm_extension(act: StepContext) -> None:
-    """The straight arm goes up at the side until the hand is as high as the head, and comes down, again and again."""
+    """The straight arm rises at the side until the hand is at head height, and comes down, repeatedly."""
     up, top, arms = _there_and_back(act, 4.0, 1.1, 6.0), act.vary(2.0, 0.07), act.sides()
     for side in arms:
         _raise_arm_aside(act, side, up, top)
@@ -295,5 +295,5 @@ def _raise_arm_aside(act: StepContext, side: int, up: PerTime, top: float) -> No
 
 @gesture("hands_up")
 def hands_up(act: StepContext) -> None:
-    """Both hands next to or in front of the face, elbows bent and out, as many hold them in squats and lunges."""
+    """Both hands next to or in front of the face, elbows bent and out, as often held in squats and lunges."""
     act.arm((act.uniform(0.6, 1.2), act.uniform(0.5, 1.0), -0.3, act.uniform(1.9, 2.4)))

@@ -12,39 +12,39 @@ from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, spline_through
 from mmweaver.motion.animation.standing import ANKLE_BEHIND, HALF_STANCE
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 
-PELVIS_OVER_SEAT = 0.075  # of the height: of the pelvis, lying
-OFF_SEAT_AHEAD_M = 0.25  # in front of the feet of the sitter: where somebody who falls off lands
-_TOWARDS_FEET = 0.06  # of the height: how far the pelvis moves along the couch, so that head and feet fit
+PELVIS_OVER_SEAT = 0.075  # of the height: pelvis of a lying body above the seat
+OFF_SEAT_AHEAD_M = 0.25  # in front of the sitter's feet: landing point of a fall off the seat
+_TOWARDS_FEET = 0.06  # of the height: shift of the pelvis along the couch, so that head and feet fit
 _LASTS = (1.4, 3.6, 2.6, 1.8, 0.95)
 
 
 @posture("lie_on_seat")
 def lying_on_seat(act: StepContext) -> None:
-    """Lying still, with the head to the own left."""
+    """Lying still, with the head to one's own left."""
     _lie_along_seat(act, np.ones_like(act.time_s))
 
 
 @posture("recline")
 def reclining(act: StepContext) -> None:
-    """From sitting: the trunk goes down to the own left while the legs come up, one after the other."""
+    """From sitting: the trunk goes down to one's own left while the legs come up, one after the other."""
     _lie_along_seat(act, act.since_start(*_LASTS))
 
 
 @posture("sit_up")
 def sitting_up(act: StepContext) -> None:
-    """The same way back."""
+    """`reclining` in reverse."""
     _lie_along_seat(act, 1 - act.since_start(*_LASTS))
 
 
 @posture("roll_in_bed")
 def rolling_in_bed(act: StepContext) -> None:
-    """Lying on it, onto a side and back again."""
+    """Lying on furniture, onto a side and back again."""
     lying_on_seat(act)
     roll(act)
 
 
 def _lie_along_seat(act: StepContext, u: PerTime) -> None:
-    """u (n,) = 0 sitting, 1 lying on the back with the head to the own left, knees bent, soles on the seat."""
+    """From sitting (`u` = 0) to lying on the back (1), (n,), head to one's own left, knees bent, soles on the seat."""
     sitting(act)
     controls, h, u = act.controls, act.height_m, np.clip(u, 0.0, 1.0)
     record, down = MOVEMENTS["lie_on_seat"], rise(u)
@@ -75,7 +75,7 @@ def _lie_along_seat(act: StepContext, u: PerTime) -> None:
 
 @posture("fall_off")
 def falling_off(act: StepContext) -> None:
-    """From sitting down to the floor next to the feet, to the own side; within about a second."""
+    """From sitting down to the floor next to the feet, to one's own side, within about a second."""
     u = np.clip(act.since_start(0.9, 1.5, 1.25, 1.05, 0.9), 0.0, 1.0)
     sitting(act)
     fallen = replace(act)

@@ -1,7 +1,7 @@
 """On the floor: kneeling, lying down on the back or the belly, falling, and getting up again.
 
-The same controls pose a body on the floor: the pelvis's height and pitch, and where the knees point. The root stays
-where the feet stood; on the back the body lies behind it, on the belly ahead of it.
+The same controls pose a body on the floor: height and pitch of the pelvis, and the direction of the knees. The root
+stays where the feet stood; on the back the body lies behind it, on the belly ahead of it.
 """
 
 import numpy as np
@@ -12,9 +12,9 @@ from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, spline_through, 
 from mmweaver.motion.animation.standing import STAND_STRETCH
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 
-# In body heights: of the pelvis above the floor, kneeling with the thighs vertical, and lying
+# In body heights: pelvis above the floor, kneeling with the thighs vertical, and lying
 KNEELING_M, LYING_M = 0.316, 0.075
-# and from the root to the pelvis, lying: back on the back, sideways on a side, ahead on the belly.
+# and root to pelvis of a lying body: behind on the back, sideways on a side, ahead on the belly.
 BACK_BEHIND_M = -MOVEMENTS["lie_on_back"]["ahead"][
     -1
 ]  # of the height: from the root back to the pelvis, lying on the back
@@ -46,7 +46,7 @@ def rising_from_knees(act: StepContext) -> None:
 
 
 def _kneel(act: StepContext, u: PerTime) -> None:
-    """u (n,) = 0 standing, 1 on the knees: one foot moves back and its knee down, then the other's."""
+    """From standing (`u` = 0) to kneeling (1), (n,): one foot moves back and its knee down, then the other's."""
     body, h, one_knee = act.body, act.height_m, act.style == "knee"
     first = LEFT if act.foot == "left" else RIGHT
     for side, begin in ((first, 0.0), (1 - first, 0.45))[: 1 if one_knee else 2]:
@@ -72,7 +72,7 @@ def lying_down(act: StepContext) -> None:
 
 @posture("fall")
 def falling(act: StepContext) -> None:
-    """Loss of balance, and down within about a second."""
+    """Loss of balance, and down to the floor within about a second."""
     _lie_down(act, act.since_start(1.15, 1.7, 1.4, 1.2, 0.9), falls=True)
 
 
@@ -90,13 +90,13 @@ def getting_up(act: StepContext) -> None:
 
 @posture("roll_over")
 def rolling_over(act: StepContext) -> None:
-    """Lying, onto a side and back again, as often as the sentence says."""
+    """Lying, onto a side and back again, as often as stated."""
     lying(act)
     roll(act)
 
 
 def roll(act: StepContext) -> None:
-    """Rolls a lying body onto its left or right side and back; the knees point where the chest does."""
+    """Rolls a lying body onto its left or right side and back; the knees follow the chest."""
     h, count = act.height_m, max(act.count, 1)
     left = 1.0 if (act.direction or ("left" if act.rng.random() < 0.5 else "right")) == "left" else -1.0
     over = sum_plateaus(act.repeats(min(3.4, act.duration_s / count), 1.5, 6.0)[:count], 0, 1, 0.4, 0.4)
@@ -114,7 +114,7 @@ def roll(act: StepContext) -> None:
 
 
 def _lie_down(act: StepContext, u: PerTime, *, falls: bool = False) -> None:
-    """u (n,) = 0 standing, 1 lying, on a side, the belly or the back, as the sentence says."""
+    """From standing (`u` = 0) to lying (1), (n,), on a side, the belly or the back, as stated."""
     if act.style in ("left", "right"):
         lie_down_on_side(act, u)
     else:
@@ -122,7 +122,7 @@ def _lie_down(act: StepContext, u: PerTime, *, falls: bool = False) -> None:
 
 
 def _lower_pelvis(act: StepContext, u: PerTime, movement: str, heights: list[float]) -> PerTime:
-    """Moves the pelvis through heights in metres, from standing to lying, and returns how far down it is."""
+    """Moves the pelvis through heights in metres, from standing to lying; returns its relative descent (n,)."""
     record, stand = MOVEMENTS[movement], act.body.pelvis_height_m(STAND_STRETCH)
     act.controls.pelvis_m[:, 2] += spline_through(u, record["at"], [stand, *heights]) - stand
     if "ahead" in record:
@@ -131,7 +131,12 @@ def _lower_pelvis(act: StepContext, u: PerTime, movement: str, heights: list[flo
 
 
 def lie_down_on_side(act: StepContext, u: PerTime) -> None:
-    """To one's own left or right: that knee gives way, the hip and then the trunk land, knees bent, an arm ahead."""
+    """Onto one's own left or right side: that knee gives way, hip and then trunk land, knees bent, an arm ahead.
+
+    Args:
+        act: Context whose controls are written.
+        u: Progress (n,): 0 standing, 1 lying.
+    """
     h, side, movement = act.height_m, LEFT if act.style == "left" else RIGHT, "lie_on_side"
     left, u = OUTWARD[side], np.clip(u, 0.0, 1.0)
     stand = act.body.pelvis_height_m(STAND_STRETCH)
@@ -157,7 +162,7 @@ def _lie_down_on_back(act: StepContext, u: PerTime, falls: bool) -> None:
 
 
 def _lie_down_on_belly(act: StepContext, u: PerTime, falls: bool) -> None:
-    """Forward: the knees give way, the trunk tips over the toes, the arms reach ahead, the body lies stretched out."""
+    """Forward: the knees give way, the trunk tips over the toes, the arms reach ahead, the body lies outstretched."""
     h = act.height_m
     _lower_pelvis(act, u, "lie_on_belly", [0.43 * h, 0.305 * h, 0.168 * h, LYING_M * h])
     for part in ("trunk", "falls" if falls else "lies"):

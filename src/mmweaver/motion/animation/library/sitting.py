@@ -1,4 +1,4 @@
-"""Sitting, sitting down and standing up, and riding an exercise bike. The root is where the feet stand."""
+"""Sitting, sitting down and standing up, and riding an exercise bike. The root is at the feet."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from mmweaver.motion.animation.standing import ANKLE_BEHIND, ARM_HANGING, STAND_
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 
 PELVIS_OVER_SEAT = 0.068  # of the body height: from the seat's surface up to the pelvis joint
-MOUNTING_S = 1.2  # from standing to the saddle of a bike
+MOUNTING_S = 1.2  # time from standing to the saddle of a bike
 _CRANK_M, _AXLE_M = 0.17, 0.28  # length of a crank, height of the bottom bracket
 _SADDLE_BEHIND = 0.115  # of the height: from the bottom bracket back to the pelvis
 _LONGEST_LEG = 0.955  # of a leg's length, with the pedal at its lowest
@@ -18,14 +18,30 @@ _HEEL_UP_RAD, _ANKLING_RAD = 0.22, 0.16
 
 
 def pelvis_behind_feet_m(body: SkeletonProportions, seat_height_m: float) -> float:
-    """How far in metres the seated pelvis is behind the root: shins about vertical, on a high seat extended."""
+    """Distance of the seated pelvis behind the root: shins about vertical, extended on a high seat.
+
+    Args:
+        body: Bone lengths.
+        seat_height_m: Height of the seat above the floor, metres.
+
+    Returns:
+        Metres.
+    """
     hip = seat_height_m + PELVIS_OVER_SEAT * body.height_m - body.hip_below_pelvis_m
     drop = hip - body.ankle_height_m - body.shank_m * 0.985  # hip over knee
     return float(np.sqrt(body.thigh_m**2 - min(drop, 0.7 * body.thigh_m) ** 2) + ANKLE_BEHIND * body.height_m - 0.03)
 
 
 def knees_ahead_m(body: SkeletonProportions, seat_height_m: float) -> float:
-    """How far in metres the seated knees are ahead of the pelvis, which lie over the ankles."""
+    """Distance of the seated knees, which are above the ankles, ahead of the pelvis.
+
+    Args:
+        body: Bone lengths.
+        seat_height_m: Height of the seat above the floor, metres.
+
+    Returns:
+        Metres.
+    """
     return pelvis_behind_feet_m(body, seat_height_m) - ANKLE_BEHIND * body.height_m + 0.03
 
 
@@ -53,7 +69,7 @@ def standing_up(act: StepContext) -> None:
 
 
 def _sit(act: StepContext, u: PerTime) -> None:
-    """u (n,) = 0 standing, 1 seated; in between the pelvis moves from one to the other."""
+    """From standing (`u` = 0) to sitting (1), (n,); the pelvis moves in between."""
     down, lean, slouch = rise((u - 0.08) / 0.92), wide_bump(u), act.uniform(0.05, 0.18)
     seat = act.seat_height_m + PELVIS_OVER_SEAT * act.height_m
     back = rise(u / 0.85) * pelvis_behind_feet_m(act.body, act.seat_height_m)
@@ -69,7 +85,7 @@ def _sit(act: StepContext, u: PerTime) -> None:
 
 @posture("pedal")
 def pedalling(act: StepContext) -> None:
-    """One turn of the cranks per second, after getting on; the root is under the saddle."""
+    """One turn of the cranks per second, after getting on; the root is below the saddle."""
     body, h, on = act.body, act.height_m, act.edges(MOUNTING_S, MOUNTING_S, 0.2)
     rate, _ = act.cycles(0.7, 1.05, 1.5, 0.5, 1.8)
     phase = act.phase(rate)

@@ -9,23 +9,34 @@ from mmweaver.motion.animation.profiles import plateau
 from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, Span, spline_through, sum_plateaus
 from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture
 
-BEGINS, THERE, BACK = 0.18, 0.52, 0.98  # shares of a punch: it leaves the guard, hits, is in the guard again
+BEGINS, THERE, BACK = 0.18, 0.52, 0.98  # shares of a punch: leaves the guard, hits, returns to the guard
 QUICK_STRIKE_S = 0.46  # of a fist, from the guard and back
 _GUARD = (0.15, 0.06, 0.11)  # of a fist: ahead, outward and up of spine3, in body heights
 
 
 @dataclass(frozen=True, kw_only=True)
 class Punch:
-    """The way of a fist by its places (ahead, outward, up; body heights), and what the trunk does with it."""
+    """Path of a fist and the response of the trunk; positions are ahead, outward and up in body heights.
+
+    Attributes:
+        on_the_way: Waypoint of the fist between guard and hit.
+        hits: Position of the fist at the hit.
+        turn_rad: Turn of the trunk with the fist.
+        dip: Dip of the body before the hit, in body heights.
+        elbow: Direction of the elbow.
+        leads: Whether the leading hand punches by default.
+        in_turn: Whether several punches alternate.
+        lasts_s: Usual time from guard to guard.
+    """
 
     on_the_way: list[float]
     hits: list[float]
-    turn_rad: float  # of the trunk, with the fist
-    dip: float  # of the body before it hits, in body heights
-    elbow: list[float]  # where it points
-    leads: bool  # the hand in front by default
-    in_turn: bool  # several alternate
-    lasts_s: float  # usually, from guard to guard
+    turn_rad: float
+    dip: float
+    elbow: list[float]
+    leads: bool
+    in_turn: bool
+    lasts_s: float
 
 
 PUNCHES = {name: Punch(**MOVEMENTS[name]) for name in ("jab", "cross", "hook", "uppercut")}
@@ -36,7 +47,7 @@ PUNCHES = {name: Punch(**MOVEMENTS[name]) for name in ("jab", "cross", "hook", "
 @gesture("hook")
 @gesture("uppercut")
 def boxing(act: StepContext) -> None:
-    """From the guard: one fist after the other where both punch, else the same one; the other stays in the guard."""
+    """From the guard: one fist after the other if both punch, else the same one; the other stays in the guard."""
     punch, n = PUNCHES[act.step.upper], len(act.time_s)
     size, restless = min(act.vary(0.98, 0.05), 1.02), act.uniform(0.003, 0.01)
     fists, out = [np.tile(_GUARD, (n, 1)) for _ in BOTH], [np.zeros(n), np.zeros(n)]
@@ -58,7 +69,7 @@ def boxing(act: StepContext) -> None:
 
 
 def _fist(act: StepContext, punch: Punch, k: int) -> int:
-    """The fist of punch k: as the sentence says, else the one that leads or follows; of several, both in turn."""
+    """The fist of punch k: as stated, else the leading or following one; several punches alternate."""
     if act.hand in ("left", "right"):
         return act.named_side
     in_front = RIGHT if act.step.usual_hand == "left" else LEFT
@@ -67,7 +78,7 @@ def _fist(act: StepContext, punch: Punch, k: int) -> int:
 
 
 def _turn_shoulder(act: StepContext, punch: Punch, side: int, hit: PerTime, at: list[float]) -> None:
-    """The trunk turns the shoulder of the fist forward, after it has been turned back a little."""
+    """The trunk turns the shoulder of the fist forward, after a slight backward turn."""
     wound = spline_through(act.time_s, [at[0] - 0.1, at[1], at[2], at[-1]], [0.0, -0.2, 1.0, 0.0])
     turn = -OUTWARD[side] * act.vary(punch.turn_rad, 0.15) * wound
     act.add(turn, spine_yaw=0.75, pelvis_yaw=0.25, head_yaw=-1)
@@ -89,7 +100,7 @@ def punching(act: StepContext) -> None:
     count = act.count or int(np.ceil(act.duration_s / period - 0.2))
     arms = act.sides() if one_arm else BOTH
     first, out = int(rng.integers(2)), [np.zeros_like(act.time_s), np.zeros_like(act.time_s)]
-    # Who hurries strikes more often, but a fist that is there and back sooner would pass what fists reach (100 m/s2).
+    # Quick boxing raises the rate; a shorter strike would exceed realistic accelerations of a fist (100 m/s2).
     shortest_s = 0.34 if act.speed <= 0 else min(QUICK_STRIKE_S, 0.95 * period * len(arms))
     strike = float(np.clip(0.75 * period, shortest_s, 0.62))
     for k in range(max(count, 1)):
@@ -123,7 +134,7 @@ def _key_arm(act: StepContext, span: Span, side: int, movement: str, weight: Per
 
 @gesture("throw")
 def throwing(act: StepContext) -> None:
-    """The hand goes back next to the ear and the trunk turns with it, then both move forward and follow through."""
+    """The hand moves back next to the ear with the trunk, then both move forward and follow through."""
     side = act.one_side()
     movement = "throw_under" if act.style == "under" or act.rng.random() < 0.2 else "throw_over"
     for span in act.repeats(1.6, 1.3, 2.3):
@@ -145,7 +156,7 @@ def pushing(act: StepContext) -> None:
 
 @gesture("pull")
 def pulling(act: StepContext) -> None:
-    """Stretched arms pull something towards the body, the trunk leaning back, again and again."""
+    """Outstretched arms pull something towards the body repeatedly, the trunk leaning back."""
     draw = sum_plateaus(act.in_turn(act.tempo(1.8, 1.4, 1.1), 1.0, 2.4, lag=0.1), 0, 0.88, 0.42, 0.42)
     act.hand_to(act.named_arms, (0.27 - 0.15 * draw, 0.06, -0.02 - 0.05 * draw))
     act.add(1, spine_pitch=0.12 - 0.26 * draw)
@@ -165,8 +176,8 @@ def carrying(act: StepContext) -> None:
 
 @gesture("cradle")
 def cradling(act: StepContext) -> None:
-    """A baby before the chest: its head in the crook of one elbow, the other hand under it; the trunk rocks it."""
-    head = 1 - act.sides()[0]  # most people keep the hand they use free
+    """A baby at the chest: its head in the crook of one elbow, the other hand below it; the trunk rocks it."""
+    head = 1 - act.sides()[0]  # most people keep the preferred hand free
     rate, _ = act.cycles(0.25, 0.4, 0.6, 0.2, 0.9)
     act.hand_to(head, (0.15, -0.03, -0.03), 1.0, (-0.3, 0.5, -1.0))
     act.hand_to(1 - head, (0.165, 0.0, -0.1), 1.0, (-0.5, 0.4, -1.0))
@@ -176,7 +187,7 @@ def cradling(act: StepContext) -> None:
 
 @gesture("reach")
 def reaching(act: StepContext) -> None:
-    """A hand reaches for something ahead at table height, or up, and comes back with it."""
+    """A hand reaches for something ahead at table height, or up, and brings it back."""
     hands = act.sides()
     if act.style == "high":
         _reach_up(act)
@@ -215,7 +226,7 @@ def golf_swing(act: StepContext) -> None:
 
 
 def _stroke_weight(span: Span, around_s: float, ramp: float) -> PerTime:
-    """1 during a stroke and so many seconds around it, with ramps of a share of its time."""
+    """1 during a stroke and within `around_s` seconds of it, with ramps of a share of its duration."""
     ramp_s = ramp * span.lasts_s
     return plateau(span.time_s, span.begin_s - around_s, span.at(1) + around_s, ramp_s, ramp_s)
 

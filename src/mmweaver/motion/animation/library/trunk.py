@@ -1,4 +1,4 @@
-"""The trunk over feet that stay: bowing, bending, leaning, twisting, picking up, putting down, dancing, hula hoop."""
+"""Trunk over stationary feet: bowing, bending, leaning, twisting, picking up, putting down, dancing, hula hoop."""
 
 import numpy as np
 from jaxtyping import Float
@@ -8,12 +8,12 @@ from mmweaver.motion.animation.profiles import bump, plateau, raised_cosine
 from mmweaver.motion.animation.spans import PerTime, Span
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 
-_BEYOND_S = 10.0  # longer than it takes to come up
+_BEYOND_S = 10.0  # longer than coming up takes
 
 
 @posture("bow")
 def bowing(act: StepContext) -> None:
-    """The straight trunk leans forward from the hips, which move back a little; holds, and comes up."""
+    """The straight trunk leans forward from the hips, which move back slightly; holds, and comes up."""
     deep = act.uniform(0.55, 0.95)
     arms = int(act.rng.integers(3))  # arms at the sides, hands on the thighs, one hand in front of the belly
     for span in act.repeats(2.1, 1.25, 3.2):
@@ -33,9 +33,9 @@ def _hinge(act: StepContext, down: PerTime, angle_rad: float) -> None:
 
 
 def _spells(act: StepContext, usual_s: float, min_s: float, max_s: float, share: float) -> list[PerTime]:
-    """How far (n,) the body is down, 0 to 1, each time: once, all the time, where it is held; ramps of a `share`.
+    """Depth (n,), 0 to 1, of each repetition: once, or throughout if it is held; ramps of a `share`.
 
-    Who stays down at the end of a sequence is down in its last frame, unless the hands have something to do meanwhile.
+    A posture held at the end of a sequence lasts to its last frame, unless the hands are active meanwhile.
     """
     if act.style in ("held", "released"):
         stays = act.last and act.style == "held" and not act.step.upper
@@ -58,7 +58,7 @@ def bending(act: StepContext) -> None:
 
 @posture("lean")
 def leaning(act: StepContext) -> None:
-    """The trunk leans to one side or back and comes up; to both sides in turn where none is named."""
+    """The trunk leans to one side or back and comes up; to both sides in turn if none is named."""
     h, deep = act.height_m, act.uniform(0.4, 0.6)
     for k, down in enumerate(_spells(act, 2.0, 1.2, 3.0, 0.4)):
         if act.direction == "backwards":
@@ -73,7 +73,7 @@ def leaning(act: StepContext) -> None:
 
 @posture("twist")
 def twisting(act: StepContext) -> None:
-    """The trunk turns to one side and the other over feet that stay, forearms level in front."""
+    """The trunk turns to one side and the other over stationary feet, forearms level in front."""
     rate, end_s = act.cycles(0.3, 0.45, 0.7, 0.25, 0.9)
     on = act.plateau(act.start_s, end_s, 0.5, 0.5)
     wide = act.uniform(0.65, 0.9)
@@ -100,7 +100,7 @@ def putting_down(act: StepContext) -> None:
 
 
 def _reach_floor(act: StepContext, down: PerTime, arms: tuple[int, ...]) -> None:
-    """Down until the hands are near the floor, more by the knees or more by the back, as the seed decides."""
+    """Down until the hands are near the floor, with a sampled proportion of knees and back."""
     depth = act.uniform(0.72, 0.95)
     act.crouch(depth * down, lean_rad=1.5 / depth)
     for side in BOTH:
@@ -161,12 +161,12 @@ def _dancing_arms(act: StepContext, beat: PerTime, sway: PerTime, on: PerTime) -
 
 @posture("hula_hoop")
 def hula_hooping(act: StepContext) -> None:
-    """The hips go round and round over feet a little apart, the chest staying behind; the arms are out of the way."""
+    """The hips circle over slightly spread feet, the chest lagging behind; the arms are kept clear."""
     h, on = act.height_m, act.edges(0.6, 0.6)
     turn = 2 * np.pi * act.tempo(0.9, 1.4, 1.9) * act.sign() * (act.time_s - act.start_s)
     ahead, left = act.vary(0.032) * np.cos(turn) * on, act.vary(0.03) * np.sin(turn) * on
     act.pelvis(ahead * h, left * h, -0.012 * h * on)
-    # The hips lead, so the pelvis tilts against its way, and the chest stays over the feet.
+    # The hips lead: the pelvis tilts against its motion, and the chest stays over the feet.
     act.add(ahead, pelvis_pitch=-2.2, spine_pitch=-2.6)
     act.add(left, pelvis_roll=2.2, spine_roll=2.6)
     act.bend_knees(0.5 * on)

@@ -30,7 +30,7 @@ def sidestepping(act: StepContext) -> None:
 
 @posture("limp", stands=False)
 def limping(act: StepContext) -> None:
-    """Short on the bad leg, the trunk thrown over it, little swing of the arms."""
+    """Short stance on the bad leg, the trunk shifted over it, little arm swing."""
     style = walking_style(act, cruise_mps(act))
     bad = act.leg_side()
     style = replace(
@@ -86,7 +86,7 @@ def walking_lunges(act: StepContext) -> None:
 def stumbling(act: StepContext) -> None:
     """After a push the trunk lags behind, quick steps catch up, and the arms fly out for balance."""
     style = walking_style(act, 1.2)
-    on_spot = act.direction == "spot"  # the feet are lifted, though they come down where they were
+    on_spot = act.direction == "spot"  # the feet are lifted but land in place
     style = replace(
         style,
         steps_hz=act.tempo(2.3, 2.7, 3.0),
@@ -96,7 +96,7 @@ def stumbling(act: StepContext) -> None:
     )
     steps_along_path(act, style, jog=on_spot, on_spot=on_spot)
     jolt, lasts_s = act.uniform(0.25, 0.45), max(min(act.duration_s, 1.5), 0.9)
-    if act.style == FALLING_ON:  # it ends where the trunk is farthest ahead of the feet
+    if act.style == FALLING_ON:  # ends with the trunk farthest ahead of the feet
         lasts_s = act.duration_s / _MOST_OUT_OF_BALANCE
     u = (act.time_s - act.start_s) / lasts_s
     early, late = bump(u / 0.6), bump((u - 0.3) / 0.7)

@@ -1,10 +1,21 @@
 import numpy as np
 import pytest
+from jaxtyping import Complex
 
+from mmweaver.compression import signal_field
+from mmweaver.compression.signal_field import (
+    Coordinates,
+    SignalField,
+    antenna_at,
+    antenna_coordinate,
+    coordinates_on,
+    finer_grid,
+    sampled_grid,
+)
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid
-from studies.fields.sampling import antenna_at, antenna_coordinate, coordinates_on, finer_grid, sampled_grid
+from tests.cubes import SMALL
 
 NATIVE = CubeGrid.of(AWR1843, 3)
 
@@ -79,3 +90,32 @@ def test_samples_follow_the_seed():
     one, again, other = (sampled_grid(NATIVE, 3, seed=seed).range_m for seed in (0, 0, 1))
     assert (one == again).all()
     assert (one != other).any()
+
+
+class Formula(SignalField):
+    def __init__(self):
+        self.config, self.grid, self.scale = SMALL, CubeGrid.of(SMALL, 3), 1.0
+
+    @property
+    def num_values(self) -> int:
+        return 0
+
+    def sample(self, coordinates: Coordinates) -> Complex[np.ndarray, " point"]:
+        frame, range_bin, doppler_bin, antenna = coordinates.T
+        return (frame + 10 * range_bin + 1j * (doppler_bin - 100 * antenna)).astype(np.complex64)
+
+
+def test_a_grid_equals_its_points(monkeypatch):
+    monkeypatch.setattr(signal_field, "CHUNK_POINTS", 1000)  # several chunks, one of them short
+    values = Formula().on_grid(CubeGrid.of(SMALL, 3))
+    frame, range_bin, doppler_bin, antenna = np.indices(values.shape)
+    assert np.allclose(values, frame + 10 * range_bin + 1j * (doppler_bin - 100 * antenna), atol=1e-2)
+    assert values.dtype == np.complex64
+
+
+def test_a_cube_carries_grid_config_and_scale():
+    field = Formula()
+    finer = field.finer(n_r=2.0)
+    assert finer.values.shape == finer.grid.shape == (3, 64, 16, 12)
+    assert finer.config is SMALL
+    assert np.allclose(finer.values[:, ::2], field.cube().values, atol=1e-2)

@@ -1,17 +1,19 @@
-"""Sampling grids of fields: finer grids, randomly offset grids, and grids as cell coordinates.
+"""The interface of all fields, a radar sequence as a function of continuous coordinates, and the grids they sample.
 
 Reference: paper, "Sampling" and "Data Augmentation".
 """
 
+from abc import ABC, abstractmethod
 from dataclasses import replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Complex, Float
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.records import CubeGrid
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.core.seeding import stream
-from mmweaver.core.shapes import AntennaPositions
+from mmweaver.core.shapes import AntennaPositions, CubeValues
 
 Axis = Float[np.ndarray, "_"]
 Axes = tuple[Axis, Axis, Axis, Axis]
@@ -20,6 +22,67 @@ Places = Float[np.ndarray, "place 3"]
 
 RADIUS_PARTS = 8  # the paper divides the step between two indices into eighths
 OFF_THE_LINE = 1e-3  # of a wavelength
+CHUNK_POINTS = 1 << 18  # points of a grid that are sampled together
+
+
+class SignalField(ABC):
+    """One radar sequence, f(frame, range, doppler, antenna) -> I + jQ, in the phase and scale of a RadarCube.
+
+    Coordinates are in cells of the native grid (`grid`), fractions included: (frame, range bin, Doppler bin, antenna),
+    the first cell of each axis at 0. `grid`, `config` and `scale` are those of the represented cube. Between bins, a
+    field approximates the same radar's Fourier transforms there, windows and TDM compensation included; phase-centring
+    is internal to a field.
+    """
+
+    config: RadarConfig
+    grid: CubeGrid
+    scale: float
+
+    @property
+    @abstractmethod
+    def num_values(self) -> int:
+        """Number of real parameters stored for this sequence (a complex number counts twice)."""
+
+    @abstractmethod
+    def sample(self, coordinates: Coordinates) -> Complex[np.ndarray, " point"]:
+        """Values at any coordinates.
+
+        Args:
+            coordinates: (point, 4) in cells of `grid`.
+
+        Returns:
+            (point,), complex64.
+        """
+
+    def on_grid(self, grid: CubeGrid) -> CubeValues:
+        """Values at the cells of any grid; fields with a faster way than point by point override this.
+
+        Args:
+            grid: of the same radar.
+
+        Returns:
+            (frame, range, doppler, antenna), complex64.
+
+        Raises:
+            InputError: where an antenna of the grid lies off the line through the field's antennas.
+        """
+        axes = coordinates_on(self.grid, grid)
+        values = np.empty(grid.shape, np.complex64)
+        flat = values.reshape(-1)
+        for first in range(0, flat.size, CHUNK_POINTS):
+            index = np.unravel_index(np.arange(first, min(first + CHUNK_POINTS, flat.size)), grid.shape)
+            points = np.stack([axis[at] for axis, at in zip(axes, index, strict=True)], axis=1)
+            flat[first : first + CHUNK_POINTS] = self.sample(points)
+        return values
+
+    def cube(self, grid: CubeGrid | None = None) -> RadarCube:
+        """The field as a RadarCube, on its native grid or on another."""
+        grid = self.grid if grid is None else grid
+        return RadarCube(values=self.on_grid(grid), grid=grid, config=self.config, scale=self.scale)
+
+    def finer(self, n_r: float = 1.0, n_d: float = 1.0, n_a: float = 1.0) -> RadarCube:
+        """The field sampled n_r, n_d, n_a times finer along range, Doppler and antennas; see `finer_grid`."""
+        return self.cube(finer_grid(self.grid, n_r=n_r, n_d=n_d, n_a=n_a))
 
 
 def finer_grid(grid: CubeGrid, *, n_r: float = 1.0, n_d: float = 1.0, n_a: float = 1.0) -> CubeGrid:
@@ -80,6 +143,20 @@ def coordinates_on(native: CubeGrid, grid: CubeGrid) -> Axes:
         _in_cells(native.range_m, grid.range_m),
         _in_cells(native.radial_velocity_mps, grid.radial_velocity_mps),
         antenna_coordinate(native.antenna_position_m, grid.antenna_position_m, native.wavelength_m),
+    )
+
+
+def cells_at(native: CubeGrid, coordinates: Coordinates) -> CubeGrid:
+    """The cells at coordinates (point, 4): a grid whose axes have one entry for each point, to be read side by side."""
+
+    def along(values: Axis, cell: Axis) -> Axis:
+        return values[0] + cell * (values[1] - values[0] if len(values) > 1 else 0.0)
+
+    return replace(
+        native,
+        range_m=along(native.range_m, coordinates[:, 1]),
+        radial_velocity_mps=along(native.radial_velocity_mps, coordinates[:, 2]),
+        antenna_position_m=antenna_at(native.antenna_position_m, coordinates[:, 3]),
     )
 
 

@@ -3,18 +3,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mmweaver.compression.scatterer_field import ScattererField
+from mmweaver.compression.scatterers.fitting import FitRecipe
+from mmweaver.compression.signal_field import finer_grid
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
 from mmweaver.signal.cube import adc_from_cube, radar_cube
-from mmweaver.signal.windows import hann
-from studies.fields.budgeted_fit import BudgetedRecipe
-from studies.fields.sampling import finer_grid
-from studies.fields.scatterer_field import ScattererField, noise_of_shared_loops
 from tests.compression.echoes import SMALL, crowd, direction_of, error_db, exact_point, middle_s
 from tests.compression.scatterers.test_fit_window import overlapping
 
-RECIPE = BudgetedRecipe(num_points=90, stages=10)
+RECIPE = FitRecipe(num_points=90, stages=10)
 
 
 @pytest.fixture(scope="module")
@@ -32,12 +30,14 @@ def one_point(config=SMALL, range_m: float = 1.4, velocity_mps: float = 0.5, num
     return RadarCube(values=np.stack(values), grid=CubeGrid.of(config, num_frames), config=config, scale=1.0)
 
 
-def test_two_ways_to_render_the_native_grid_agree(field: ScattererField):
+def test_three_ways_to_render_the_native_grid_agree(field: ScattererField):
     truth = crowd().values
     native = field.native()
     assert error_db(native, truth) < -30
     assert np.array_equal(field.native(threads=2), native)
     assert error_db(field.on_grid(replace(field.grid)), native) < -90
+    index = np.stack([np.random.default_rng(0).integers(0, size, 300) for size in native.shape], axis=1)
+    assert error_db(field.sample(index.astype(float)), native[tuple(index.T)]) < -90
     assert field.num_values < 90 * 6 + 2 * 24 * 12 + 2
 
 
@@ -48,7 +48,7 @@ def test_finer_grids_contain_the_native_cells(field: ScattererField):
 
 def test_values_between_bins_equal_those_of_a_shifted_radar():
     """Half a range bin off: the exact cube of the same point, moved by half a bin, up to its phase."""
-    field = ScattererField.fit(one_point(), BudgetedRecipe(num_points=3, stages=1, with_static=False, least_gain=0.0))
+    field = ScattererField.fit(one_point(), FitRecipe(num_points=3, stages=1, with_static=False, least_gain=0.0))
     half = replace(field.grid, range_m=field.grid.range_m + SMALL.range_resolution_m / 2)
     ours = field.on_grid(half)[0]
     moved = exact_point(SMALL, 1.4 - SMALL.range_resolution_m / 2, 0.5, direction_of(0.2, 0.1))
@@ -57,7 +57,7 @@ def test_values_between_bins_equal_those_of_a_shifted_radar():
 
 def test_a_point_is_rendered_for_another_radar():
     """Twice the bandwidth and half the loops, nothing fitted again: right phase and place."""
-    field = ScattererField.fit(one_point(), BudgetedRecipe(num_points=1, stages=1, with_static=False, least_gain=0.0))
+    field = ScattererField.fit(one_point(), FitRecipe(num_points=1, stages=1, with_static=False, least_gain=0.0))
     slope = 1.25 * SMALL.chirp_slope_hz_per_s
     other = replace(
         SMALL, chirp_slope_hz_per_s=slope, num_loops=8, num_range_bins=30, start_frequency_hz=76.5e9,
@@ -72,7 +72,7 @@ def test_a_point_is_rendered_for_another_radar():
 
 def test_static_clutter_is_rendered_for_another_radar():
     cube = one_point(velocity_mps=0.0, num_frames=2)
-    field = ScattererField.fit(cube, BudgetedRecipe(num_points=0, stages=1))
+    field = ScattererField.fit(cube, FitRecipe(num_points=0, stages=1))
     assert int(field.layers.counts().sum()) == 0
     other = replace(SMALL, num_loops=8)
     truth = exact_point(other, 1.4, 0.0, direction_of(0.2, 0.1))
@@ -89,7 +89,7 @@ def test_overlapping_windows_at_any_instant():
     windows = np.stack([adc[2 + 4 * at : 18 + 4 * at] for at in range(10)])
     every = radar_cube(AdcCube(samples=windows, config=SMALL, scale=1.0))
     grid = replace(every.grid, frame_time_s=np.arange(10) * 4 * SMALL.loop_period_s)
-    field = ScattererField.fit(replace(every, grid=grid), BudgetedRecipe(num_points=3, stages=3, with_static=False))
+    field = ScattererField.fit(replace(every, grid=grid), FitRecipe(num_points=3, stages=3, with_static=False))
     assert field.fit_window.hop == 4
     assert error_db(field.native(), every.values) < -35
     halfway = replace(grid, frame_time_s=grid.frame_time_s[2:4] + 2 * SMALL.loop_period_s)
@@ -105,7 +105,7 @@ def test_noise_has_the_power_and_correlation_of_the_recording():
     shape = (3, 16, SMALL.num_tx, SMALL.num_rx, SMALL.num_samples)
     adc = (rng.normal(size=shape) + 1j * rng.normal(size=shape)).astype(np.complex64)
     cube = radar_cube(AdcCube(samples=adc, config=SMALL, scale=1.0))
-    field = ScattererField.fit(cube, BudgetedRecipe(num_points=1, with_static=False, least_gain=1e9))
+    field = ScattererField.fit(cube, FitRecipe(num_points=1, with_static=False, least_gain=1e9))
     silent = replace(cube, values=np.zeros_like(cube.values))
     ours = field.with_noise(silent, seed=1).values
     assert np.mean(np.abs(ours) ** 2) == pytest.approx(np.mean(np.abs(cube.values) ** 2), rel=0.1)
@@ -120,11 +120,3 @@ def test_an_empty_cube_is_refused(value: float):
     cube = crowd()
     with pytest.raises(InputError):
         ScattererField.fit(replace(cube, values=np.full_like(cube.values, value)))
-
-
-def test_overlapping_frames_share_chirps():
-    hop, num_loops = AWR1843.num_loops // 4, AWR1843.num_loops
-    got = noise_of_shared_loops(np.random.default_rng(0), AWR1843, 8, hop)
-    assert np.mean(np.abs(got) ** 2) == pytest.approx(1.0, rel=0.05)
-    chirps = np.fft.ifft(got, axis=2)[:, :, 1:] / hann(num_loops)[1:, None]  # the window is blind to the first
-    assert np.allclose(chirps[:-1, :, hop:], chirps[1:, :, : num_loops - 1 - hop], atol=1e-3 * np.abs(chirps).mean())

@@ -15,9 +15,9 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Complex
 
+from mmweaver.compression.signal_field import Coordinates
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, RadarCube
-from studies.fields.sampling import Coordinates
 
 
 def centring_phasor(config: RadarConfig, grid: CubeGrid) -> Complex[np.ndarray, "range doppler"]:

@@ -10,12 +10,14 @@ from dataclasses import replace
 
 import numpy as np
 import torch
+from jaxtyping import Complex
 from torch import Tensor
 
-from mmweaver.compression.scatterers.cell_noise import MIXED_POWER, cell_noise, num_sampled_bins, range_bins
+from mmweaver.compression.scatterers.cell_noise import cell_noise, overlapping_noise
 from mmweaver.compression.scatterers.fit_window import FitWindow, long_window, overlap_hop
 from mmweaver.compression.scatterers.fitting import FitRecipe, fitted
 from mmweaver.compression.scatterers.layers import Layers, no_points, rendered
+from mmweaver.compression.signal_field import Coordinates, SignalField, cells_at, coordinates_on
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
@@ -24,34 +26,29 @@ from mmweaver.core.seeding import stream
 from mmweaver.core.shapes import CubeValues
 from mmweaver.signal.point_response import PointResponse, Points
 from mmweaver.signal.windows import doppler_window, doppler_window_middle
-from studies.fields.budgeted_fit import BudgetedFit, BudgetedRecipe, num_values
-from studies.fields.sampling import coordinates_on
-from studies.fields.signal_field import SignalField
 
 POINTS_A_FRAME = 83  # of six values: about the 10,018 values of the paper's INR in 20 frames
+SAMPLES_AT_ONCE = 1 << 14
 STATIC_POINTS = 200  # scatterers that replace the static layer for another radar
 
 
 class ScattererField(SignalField):
     """Points and static layer (`layers`), their working frames (`fit_window`), and the amplitude of 1.0 (`peak`)."""
 
-    def __init__(
-        self,
-        layers: Layers,
-        fit_window: FitWindow,
-        grid: CubeGrid,
-        scale: float,
-        peak: float,
-        active_beams: np.ndarray | None = None,
-    ):
-        self.layers, self.fit_window, self.active_beams = layers, fit_window, active_beams
+    def __init__(self, layers: Layers, fit_window: FitWindow, grid: CubeGrid, scale: float, peak: float):
+        self.layers, self.fit_window = layers, fit_window
         self.config, self.grid, self.scale, self.peak = fit_window.config, grid, scale, peak
 
     @classmethod
-    def fit(cls, cube: RadarCube, recipe: BudgetedRecipe | None = None) -> "ScattererField":
-        """Fits scatterers to a cube. Raises InputError where the cube is all zeros or not finite.
+    def fit(cls, cube: RadarCube, recipe: FitRecipe | None = None) -> "ScattererField":
+        """Fits scatterers to a cube.
 
-        Without a recipe: 83 points per frame and a static layer.
+        Args:
+            cube: the sequence.
+            recipe: budget and effort; by default 83 points per frame and a static layer.
+
+        Raises:
+            InputError: where the cube is all zeros or not finite.
         """
         values = cube.values
         if not np.isfinite(values).all():
@@ -61,15 +58,12 @@ class ScattererField(SignalField):
             raise InputError("the cube is all zeros: there is nothing to fit")
         fit_window = FitWindow.of(cube.config, len(values), overlap_hop(cube))
         working = fit_window.working(values / np.float32(peak))
-        recipe = recipe or BudgetedRecipe(num_points=POINTS_A_FRAME * len(values), with_static=len(values) > 1)
-        with torch.no_grad():
-            fit = BudgetedFit(working, fit_window, recipe)
-            layers = fit.run()
-        return cls(layers, fit_window, cube.grid, cube.scale, peak, fit.active_beams)
+        recipe = recipe or FitRecipe(num_points=POINTS_A_FRAME * len(values), with_static=len(values) > 1)
+        return cls(fitted(working, fit_window, recipe), fit_window, cube.grid, cube.scale, peak)
 
     @property
     def num_values(self) -> int:
-        return num_values(self.layers, self.active_beams, self.fit_window.response)
+        return self.layers.num_values(self.fit_window.response)
 
     def native(self, threads: int = 1) -> CubeValues:
         """Values on the native grid, complex64 (frame, range, doppler, antenna); frames are divided among `threads`."""
@@ -111,10 +105,20 @@ class ScattererField(SignalField):
         gains = interpolate(self.layers.calibration, antenna)
         static = interpolate(interpolate(self.layers.static, range_cell, is_signal=True).T, antenna).T
         with torch.inference_mode():
-            points = self._at(_frames_of(self.grid, frame), response)
+            points = self._at(np.clip(frame, -0.5, len(self.grid.frame_time_s) - 0.5), response)
             cells = torch.cat([response.render(part, axes) for part in _each(points)])
             cells += static[:, None] * response.doppler_kernel(axes.doppler_bin)[0][:, None]
             return (cells * gains * response.phasor(axes) * self.peak).numpy()
+
+    def sample(self, coordinates: Coordinates) -> Complex[np.ndarray, " point"]:
+        """Values at any coordinates; see `SignalField.sample`."""
+        out = np.empty(len(coordinates), np.complex64)
+        for frame in np.unique(coordinates[:, 0]):
+            at = np.flatnonzero(coordinates[:, 0] == frame)
+            for first in range(0, len(at), SAMPLES_AT_ONCE):
+                part = at[first : first + SAMPLES_AT_ONCE]
+                out[part] = self._cells(coordinates[part], frame)
+        return out
 
     def with_noise(self, cube: RadarCube, seed: int) -> RadarCube:
         """A rendered cube plus receiver noise of the fitted power: white before windowing, so neighbours correlate.
@@ -128,7 +132,7 @@ class ScattererField(SignalField):
                 f"noise is known on the native cells, {self.grid.shape}, not on {shape}; render with cube()"
             )
         rng, hop = stream(seed, "scatterer field noise"), self.fit_window.hop
-        noise = noise_of_shared_loops(rng, config, shape[0], hop) if hop else cell_noise(rng, config, shape[0])
+        noise = overlapping_noise(rng, config, shape[0], hop) if hop else cell_noise(rng, config, shape[0])
         noise *= np.float32(self.peak * math.sqrt(self._cell_noise()))
         noise += cube.values
         return replace(cube, values=noise)
@@ -168,6 +172,18 @@ class ScattererField(SignalField):
         return _propagated(
             self.layers.points[torch.from_numpy(index)], self.fit_window.response, response, torch.from_numpy(late_s)
         )
+
+    def _cells(self, coordinates: Coordinates, frame: float) -> np.ndarray:
+        """Values (point,) of one frame, cell by cell."""
+        response = PointResponse(self.config)
+        axes = response.axes(cells_at(self.grid, coordinates))
+        with torch.inference_mode():
+            points = self._at(np.array([frame]), response)
+            static = interpolate(self.layers.static, coordinates[:, 1], is_signal=True)
+            static = (static * line_weights(coordinates[:, 3], static.shape[1]).to(static.dtype)).sum(1)
+            total = response.cells(points, axes)[0] + static * response.doppler_kernel(axes.doppler_bin)[0]
+            total *= interpolate(self.layers.calibration, coordinates[:, 3])
+            return (total * response.phasor(axes, is_grid=False) * self.peak).numpy()
 
     def _static_points(self) -> Points:
         """The static layer as points (1, point)."""
@@ -227,10 +243,6 @@ def _each(points: Points) -> list[Points]:
     return [points[at : at + 1] for at in range(len(points.range_bin))]
 
 
-def _frames_of(grid: CubeGrid, frame: np.ndarray) -> np.ndarray:
-    return np.clip(frame, -0.5, len(grid.frame_time_s) - 0.5)
-
-
 def _frames_at(grid: CubeGrid, time_s: np.ndarray) -> np.ndarray:
     """Fractional frame indices of times since the first frame."""
     own_s = grid.frame_time_s
@@ -239,17 +251,15 @@ def _frames_at(grid: CubeGrid, time_s: np.ndarray) -> np.ndarray:
 
 def interpolate(values: Tensor, cell: np.ndarray, *, is_signal: bool = False) -> Tensor:
     """Values (cell, ...) at fractional cells: linear, or band-limited (sinc) for a centred signal along range."""
-    distance = torch.from_numpy(np.asarray(cell, np.float64))[:, None] - torch.arange(len(values))
-    weight = torch.sinc(distance) if is_signal else (1 - distance.abs()).clamp(min=0)
-    return (weight.to(values.dtype) @ values.reshape(len(values), -1)).reshape(-1, *values.shape[1:])
+    num = len(values)
+    weights = torch.sinc(_distances(cell, num)) if is_signal else line_weights(cell, num)
+    return (weights.to(values.dtype) @ values.reshape(num, -1)).reshape(-1, *values.shape[1:])
 
 
-def noise_of_shared_loops(rng: np.random.Generator, config: RadarConfig, num_frames: int, hop: int) -> np.ndarray:
-    """As `cell_noise`, of frames `hop` loops apart, which share the noise of their chirps."""
-    loops = config.num_loops
-    shape = (num_sampled_bins(config), loops + hop * (num_frames - 1), 2 * config.num_antennas)
-    lines = np.ascontiguousarray(range_bins(rng.standard_normal(shape, dtype=np.float32), config)).view(np.complex64)
-    window = doppler_window(loops)
-    window = (window / np.sqrt(2 * MIXED_POWER * np.sum(window**2))).astype(np.float32)
-    cut = np.stack([lines[:, hop * at :][:, :loops] for at in range(num_frames)])
-    return np.fft.fft(cut * window[:, None], axis=2).astype(np.complex64)
+def line_weights(cell: np.ndarray, num: int) -> Tensor:
+    """Weights (sample, cell) of linear interpolation between `num` cells; float64."""
+    return (1 - _distances(cell, num).abs()).clamp(min=0)
+
+
+def _distances(cell: np.ndarray, num: int) -> Tensor:
+    return torch.from_numpy(np.asarray(cell, np.float64))[:, None] - torch.arange(num)
