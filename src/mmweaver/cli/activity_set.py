@@ -1,4 +1,4 @@
-"""mmweaver dataset --activities: a labelled set in one's own rooms."""
+"""mmweaver dataset --activities: a labelled set in the user's own rooms."""
 
 import shlex
 import sys
@@ -13,7 +13,17 @@ if TYPE_CHECKING:
 
 
 def run_activity_set(asked: "Options") -> int:
-    """Makes what is missing of the set and prints the verdict of its leak report. Raises InputError."""
+    """Generates the missing sequences of a set, and prints the verdict of its leak report.
+
+    Args:
+        asked: Options of the command.
+
+    Returns:
+        Exit status.
+
+    Raises:
+        InputError: For options or files that cannot be used.
+    """
     if asked.from_results is not None:
         return _run_from_results(asked)
     from mmweaver.core.safe_files.safe_text import read_text
@@ -45,7 +55,7 @@ def run_activity_set(asked: "Options") -> int:
 
 
 def _run_from_results(asked: "Options") -> int:
-    """Result folders as one set."""
+    """Combines result folders into one set."""
     from mmweaver.core.output_checks import check_output_folder
     from mmweaver.datasets.build_set import read_activities
     from mmweaver.datasets.from_results import set_of_results
@@ -73,7 +83,15 @@ def _print_report(asked: "Options", report: dict[str, Any], what: str) -> int:
 
 
 def make_with_bar(builder: "SetBuilder", *, quiet: bool) -> dict[str, Any]:
-    """The leak report of the set, once what was missing of it is made; a bar shows how far it is."""
+    """Generates the missing sequences of a set, with a progress bar.
+
+    Args:
+        builder: The set.
+        quiet: Whether the bar is hidden.
+
+    Returns:
+        The leak report of the set.
+    """
     from tqdm import tqdm
 
     from mmweaver.datasets.dataset_cost import check_for_space
@@ -101,5 +119,5 @@ def make_with_bar(builder: "SetBuilder", *, quiet: bool) -> dict[str, Any]:
 
 
 def _command() -> str:
-    """The command line that makes the set, or the rest of it."""
+    """The command line that generates the rest of the set."""
     return shlex.join(["mmweaver", *sys.argv[1:]]) if sys.argv[1:2] == ["dataset"] else "mmweaver dataset"

@@ -1,4 +1,4 @@
-"""The command line: options of a dataclass become arguments, those of a TOML file fill in what is not given."""
+"""The command line: fields of a dataclass become options, and a TOML file provides those that are not given."""
 
 import argparse
 import dataclasses
@@ -29,10 +29,10 @@ REQUEST_FILE = "request.toml"
 HELP_ALL = "--help-all"
 # written into request.toml even where they are the default, which may change
 ALWAYS_WRITTEN = ("radar", "frames", "seed", "points", "method", "board")
-IGNORED_IN_FILES = ("draws", "html", "strict", "log-level")  # of 0.2, which say nothing of the signal itself
+IGNORED_IN_FILES = ("draws", "html", "strict", "log-level")  # of 0.2, which do not affect the signal
 # defaults of 0.2 that a file may name; switches were off
 OLD_DEFAULTS = {"repeat": 1, "motion-model-for": "unknown", "precision": "auto", "lighting": "", "effort": "full"}
-# Options of 0.2 by their name today, perhaps with a key that the value follows; or what to do instead.
+# Options of 0.2: their present name, possibly with a key that precedes the value; or what to do instead.
 RENAMED = {
     "--empty-room": "--background",
     "--each": "--per-class",
@@ -119,7 +119,13 @@ class Parser(argparse.ArgumentParser):
 
 
 def add_options(parser: Parser, command: type[General], *, rare: bool) -> None:
-    """Declares the options of a dataclass; the help shows rare ones only if asked to. What is not given is None."""
+    """Declares the options of a dataclass; options that are not given are None.
+
+    Args:
+        parser: Parser of the command.
+        command: The dataclass.
+        rare: Whether the help shows rare options.
+    """
     groups: dict[str, Any] = {"": parser}
     group: Any = parser
     own = getattr(command, "GROUPS", {})
@@ -169,9 +175,18 @@ def _value(one: "dataclasses.Field[Any]", word: str) -> Any:
 
 
 def parsed(parser: Parser, commands: "dict[str, tuple[Parser, type[General]]]", argv: list[str]) -> General | None:
-    """The options of a command line, as the dataclass of its command; None where there is no command.
+    """Parses a command line.
 
-    Raises InputError for words that are no options of it, and for a file of --config that has others.
+    Args:
+        parser: Parser of all commands.
+        commands: Parser and dataclass of each command, by name.
+        argv: The words.
+
+    Returns:
+        The options as the dataclass of the command; None without a command.
+
+    Raises:
+        InputError: For unknown options, also in a file of --config.
     """
     argv = _today(argv)
     own, kind = commands.get(next((word for word in argv if not word.startswith("-")), ""), (parser, General))
@@ -197,7 +212,7 @@ def parsed(parser: Parser, commands: "dict[str, tuple[Parser, type[General]]]", 
 
 
 def _relax(parser: Parser) -> None:
-    """What is required may come from a file instead."""
+    """Makes required options optional, since a file may provide them."""
     for action in parser._actions:
         action.required = False
         if not action.option_strings:
@@ -205,7 +220,7 @@ def _relax(parser: Parser) -> None:
 
 
 def _today(argv: list[str]) -> list[str]:
-    """Words with options of 0.2 replaced by those of today, each with a warning."""
+    """Replaces options of 0.2 by their present names, each with a warning."""
     words, rest = [], iter(argv)
     for word in rest:
         old, equals, value = word.partition("=")
@@ -225,7 +240,11 @@ def _today(argv: list[str]) -> list[str]:
 
 
 def renamed(old: str) -> str:
-    """The name today of an option of 0.2, with a warning. Raises InputError for one that is gone."""
+    """Present name of an option of 0.2, with a warning.
+
+    Raises:
+        InputError: If the option no longer exists.
+    """
     new = RENAMED[old]
     if new not in ("", "PATH") and not new.startswith("--"):
         raise InputError(f"{old} is gone: {new}")
@@ -234,7 +253,16 @@ def renamed(old: str) -> str:
 
 
 def check_mode(asked: General, mode: str, uses: dict[str, str]) -> None:
-    """Raises InputError for an option that another mode of a command uses; `uses`: names of fields by mode."""
+    """Checks that no options of another mode of a command are given.
+
+    Args:
+        asked: The options.
+        mode: The mode.
+        uses: Names of fields by mode.
+
+    Raises:
+        InputError: If an option belongs to another mode.
+    """
     own, others = uses[mode].split(), {name for names in uses.values() for name in names.split()}
     for one in options_of(asked):
         if one.name in others and one.name not in own and getattr(asked, one.name) != one.default:
@@ -248,7 +276,7 @@ def check_mode(asked: General, mode: str, uses: dict[str, str]) -> None:
 
 # options from a file ------------------------------------------------------------------------------------------------
 def _read_file(file: Path, command: str, kind: type[General]) -> dict[str, Any]:
-    """The values of a file. Raises InputError for one that is no TOML, or has an option that the command lacks."""
+    """The values of a file; InputError if it is not TOML, or has options that the command lacks."""
     from mmweaver.core.safe_files.safe_text import read_toml
 
     values = read_toml(file)
@@ -297,9 +325,13 @@ def _read_file_value(one: "dataclasses.Field[Any]", value: Any, file: Path) -> A
 
 
 def request_toml(asked: General, **instead: Any) -> str:
-    """The options of a run as TOML, which `--config` reads; `instead` replaces the values of some.
+    """The options of a run as TOML, which `--config` reads.
 
-    Files are written as absolute paths; where results go and what is printed is left out.
+    Files are written as absolute paths; output paths and display options are omitted.
+
+    Args:
+        asked: The options.
+        **instead: Values that replace those of some options.
     """
     import tomli_w
 
@@ -335,14 +367,14 @@ def _file_value(one: "dataclasses.Field[Any]", value: Any) -> Any:
 
 
 def _is_file(path: Path, name: str) -> bool:
-    """Whether a `Source` is a file or folder and no name."""
+    """Whether a `Source` is a file or folder rather than a name."""
     from mmweaver.core.presets import PRESETS
 
     return name not in PRESETS and name not in ("builtin", "small", "ideal", "typical") and path.exists()
 
 
 def write_request(folder: Path, asked: General) -> None:
-    """Writes the options of a run into its folder, whole or not at all."""
+    """Writes the options of a run into its folder, atomically."""
     from mmweaver.core.atomic_files import atomic_file
 
     with atomic_file(folder / REQUEST_FILE) as partial_file:

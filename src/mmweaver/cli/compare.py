@@ -41,7 +41,11 @@ class Options(Samples, Written):
 
 
 def run(asked: Options) -> int:
-    """Compares, writes and prints. Raises InputError."""
+    """Compares two signals, writes and prints the result.
+
+    Raises:
+        InputError: For signals that cannot be read or compared.
+    """
     from mmweaver.evaluation.compare_signals import compare
     from mmweaver.evaluation.comparison_page import check_comparison_folder
 

@@ -21,7 +21,11 @@ class Options(General):
 
 
 def run(asked: Options) -> int:
-    """Prints the script on stdout. Raises InputError where shtab is not installed."""
+    """Prints the script on stdout.
+
+    Raises:
+        InputError: If shtab is not installed.
+    """
     need("completion", "completion", "shtab")
     import shtab
 

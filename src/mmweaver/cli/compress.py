@@ -22,7 +22,7 @@ EXAMPLES = """examples:
 
 
 def quality(word: str) -> float:
-    """'30' -> 30 dB, 'lossless' -> infinite."""
+    """'30' -> 30 dB, 'lossless' -> infinity."""
     value = math.inf if word == "lossless" else float(word)
     if math.isnan(value):
         raise ValueError
@@ -59,7 +59,11 @@ class Options(Written, Samples, Ranges):
 
 
 def run(asked: Options) -> int:
-    """Compresses and writes the file. Raises InputError."""
+    """Compresses a recording and writes the file.
+
+    Raises:
+        InputError: For options or a recording that cannot be used.
+    """
     is_raw = asked.quality == math.inf
     if (asked.bytes is None) == (asked.quality is None):
         raise InputError("say how small with --bytes, or how good with --quality DB or --quality lossless")
@@ -153,7 +157,7 @@ def _compress_at_once(asked: Options, cube: Any, bar: Any) -> dict[str, float]:
 
 
 def _compress_samples(asked: Options) -> int:
-    """Raw samples without loss, or with a bounded error."""
+    """Compresses raw samples without loss, or with a bounded error."""
     from mmweaver.cli.progress import StageBar
 
     if asked.file.suffix not in (".bin", ".pcap", ".pcapng"):

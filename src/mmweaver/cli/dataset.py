@@ -92,7 +92,11 @@ class Options(LabelledSet, RoomSet, RadarChoice, Ranges, BoardChoice, Printed):
     dry_run: bool = option("print what would be made and its cost, and stop", default=False, is_setting=False)
 
     def radar_config(self) -> "RadarConfig":
-        """The radar that records. Raises InputError."""
+        """The radar that records, with its range window.
+
+        Raises:
+            InputError: For an unknown radar or an impossible range.
+        """
         from mmweaver.core.range_window import chosen_range
         from mmweaver.io.radar_file import load_radar
 
@@ -100,7 +104,11 @@ class Options(LabelledSet, RoomSet, RadarChoice, Ranges, BoardChoice, Printed):
 
 
 def run(asked: Options) -> int:
-    """Generates what is missing. Raises InputError."""
+    """Generates what is missing of a data set.
+
+    Raises:
+        InputError: For options or files that cannot be used.
+    """
     if asked.activities is not None or asked.from_results is not None:
         from mmweaver.cli.activity_set import run_activity_set
 

@@ -17,7 +17,7 @@ EXAMPLES = """examples:
 
 
 def frames(word: str) -> slice:
-    """'3:7' -> slice(3, 7); either side may be left out.
+    """'3:7' -> slice(3, 7); either side may be omitted.
 
     >>> frames("3:")
     slice(3, None, None)
@@ -43,7 +43,11 @@ class Options(Quiet):
 
 
 def run(asked: Options) -> int:
-    """Decompresses and writes radar.npz and radar.json, or the samples of a .mmwl file. Raises InputError."""
+    """Decompresses a .mmw file to radar.npz and radar.json, or a .mmwl file to its samples.
+
+    Raises:
+        InputError: For a damaged file, or an output that cannot be written.
+    """
     from mmweaver.compression.lossless_file import is_lossless_file
 
     return _samples(asked) if is_lossless_file(asked.file) else _cube(asked)
@@ -97,7 +101,7 @@ def _cube(asked: Options) -> int:
 
 
 def _check_outputs(asked: Options, radar_out: Path) -> None:
-    """Raises InputError where an output may not be written; a radar.json with the same radar may be there."""
+    """Checks the outputs; InputError if one cannot be written. A radar.json of the same radar may exist."""
     from mmweaver.compression.mmw_container import MmwFile
     from mmweaver.core.output_checks import check_output_file
 

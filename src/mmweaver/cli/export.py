@@ -26,7 +26,11 @@ class Options(Written):
 
 
 def run(asked: Options) -> int:
-    """Exports one result or many. Raises InputError."""
+    """Exports one result or many.
+
+    Raises:
+        InputError: For a folder without results, or a format that is not available.
+    """
     from mmweaver.core.errors import InputError
     from mmweaver.datasets.export import FORMATS, export_result, export_set, is_of_two_radars
     from mmweaver.datasets.room_sequences import is_set

@@ -56,7 +56,7 @@ _MOTION_SETTINGS = {
 
 @options
 class RoomInput:
-    """Where the room comes from."""
+    """Source of the room."""
 
     demo: bool = option(f"the bundled sample room (and --out {DEMO_OUT})", default=False, group="input")
     rgb: Path | None = option("colour picture of the room", "PNG")
@@ -106,7 +106,14 @@ class RoomInput:
     )
 
     def read_room(self, weaver: "Weaver") -> "Room":
-        """The room, reconstructed. Raises InputError for options that another kind of room has."""
+        """Reads and reconstructs the room.
+
+        Args:
+            weaver: Reader of rooms.
+
+        Raises:
+            InputError: For options of another kind of room.
+        """
         if self.demo:
             return weaver.sample_room()
         how: dict[str, Any] = {}
@@ -123,7 +130,11 @@ class RoomInput:
         return weaver.open_room(self.room, **{name: value for name, value in how.items() if value is not None})
 
     def check_room(self) -> None:
-        """Raises InputError where no room is described, or two are."""
+        """Checks that exactly one room is given.
+
+        Raises:
+            InputError: If no room or two are given.
+        """
         given = [name for name in ("room", "depth", "camera", "rgb", "classes") if getattr(self, name) is not None]
         if self.demo and given:
             raise InputError(
@@ -149,7 +160,7 @@ class RoomInput:
 
 @options
 class MotionInput:
-    """Motions that are not made of one sentence."""
+    """Motions from sources other than one sentence."""
 
     motion_file: Path | None = option(
         "a recorded motion instead of the first --text, which then only names it: .bvh, .npz (AMASS, SMPL, CMU,"
@@ -187,7 +198,7 @@ class MotionInput:
 
 @options
 class Advanced(Layout):
-    """Which method makes the signal."""
+    """Method that makes the signal."""
 
     method: str = option(
         "which paths make the signal: weaver, those of the trained network (also called auto), or physics, those of the"
@@ -209,7 +220,7 @@ class Advanced(Layout):
 
 @options
 class Results(Written):
-    """Where the files go."""
+    """Output files."""
 
     out: Path | None = option("folder for the results", "DIR", group="output", is_setting=False)
     no_pictures: bool = option("leave out preview.png and preview.gif", default=False)
@@ -242,9 +253,9 @@ class Options(RoomInput, Request, MotionInput, RadarChoice, Ranges, PointChoice,
         return {name: values[0] if values else None for name, values in given.items()}
 
     def board_name(self) -> str | None:
-        """The board by name; a typical one with the number of the seed, the same for all sequences of a run.
+        """Name of the board; a typical one is numbered by the seed, and the same for all sequences of a run.
 
-        None: that of the background recording.
+        None for the board of the background recording.
         """
         name: Any = self.board or ("typical" if self.background is None else None)
         return f"typical:{self.seed % 2**31}" if name == "typical" else name and str(name)
@@ -273,7 +284,11 @@ class Options(RoomInput, Request, MotionInput, RadarChoice, Ranges, PointChoice,
 
 
 def run(asked: Options) -> int:
-    """Checks all that is cheap, then generates the signal and writes it. Raises InputError."""
+    """Checks everything that is fast to check, then generates the signal and writes it.
+
+    Raises:
+        InputError: For a request that cannot be met.
+    """
     asked.check_room()
     if asked.text is None and asked.motion_file is None and asked.texts is None and not asked.demo:
         raise InputError(
@@ -309,7 +324,7 @@ def _run_one(asked: Options, out: Path) -> int:
         radar = radar_of(asked, background)
         texts = [DEMO_TEXT] if asked.text is None and asked.motion_file is None else asked.text
         request = asked.asked(text=texts)
-        if asked.motion_file is None and asked.motion_model is None:  # before PyTorch starts, which takes 2 s
+        if asked.motion_file is None and asked.motion_model is None:  # before importing PyTorch, which takes 2 s
             parse(request, radar)
         weaver = weaver_of(asked, radar, bar)
         parsed = weaver.parsed(_add_motion(asked, request, weaver))
@@ -320,7 +335,7 @@ def _run_one(asked: Options, out: Path) -> int:
 
 
 def _picture_or(model: str, picture: str, name: str) -> str:
-    """Which argument of `Weaver.read_room` a name is of: a picture's, or a model's."""
+    """Name of the argument of `Weaver.read_room` for a value: that of a picture or that of a model."""
     return picture if Path(name).suffix.lower() in PICTURES else model
 
 
@@ -335,7 +350,7 @@ def _photos(words: str | None) -> list[int] | str | None:
 
 # a motion that is not made of a sentence ----------------------------------------------------------------------------
 def _check_motion(asked: Options) -> None:
-    """Raises InputError for options that contradict each other."""
+    """Checks the options of motions; InputError if they contradict each other."""
     settings = read_settings(asked.motion_set, _MOTION_SETTINGS, "motion-set")
     if asked.motion_file is not None and asked.motion_model is not None:
         raise InputError("--motion is a recorded motion, --motion-model makes one of --text; give one of them")
@@ -354,8 +369,8 @@ def _check_motion(asked: Options) -> None:
         raise InputError("--motion-set is about a recorded motion; give --motion too")
 
 
-def _add_motion(asked: Options, request: Request, weaver: "Weaver") -> Request:
-    """The request with the recorded motion, or with that which a model makes of its text."""
+def _with_motion(asked: Options, request: Request, weaver: "Weaver") -> Request:
+    """The request with a recorded motion, or with one that a model generates from its text."""
     from dataclasses import replace
 
     settings = read_settings(asked.motion_set, _MOTION_SETTINGS, "motion-set")
@@ -378,7 +393,7 @@ def _add_motion(asked: Options, request: Request, weaver: "Weaver") -> Request:
 
 
 def _motion_of_model(asked: Options, request: Request, is_of_all: bool, weaver: "Weaver") -> "MotionClip | None":
-    """The motion that --motion-model makes of the text; None of a text that the library knows."""
+    """The motion that --motion-model generates from the text; None for a text that the library knows."""
     from mmweaver.motion.language.sentence_parser import parse_sentence
     from mmweaver.motion.motion_models import MotionTask, clip_of, load_motion_model
 

@@ -1,4 +1,4 @@
-"""What `mmweaver generate` makes its sequences with: the radar, the generator, the room."""
+"""Inputs of `mmweaver generate`: the radar, the generator, the room."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -17,7 +17,11 @@ DEFAULT_RADAR = "awr1843"
 
 
 def read_background(asked: "Options") -> "RadarCube | None":
-    """The background recording, if one is given. Raises InputError for what is no recording."""
+    """The background recording, if one is given.
+
+    Raises:
+        InputError: If it is not a recording.
+    """
     if asked.background is None:
         return None
     from mmweaver.recordings.read_recording import read_recording
@@ -26,7 +30,12 @@ def read_background(asked: "Options") -> "RadarCube | None":
 
 
 def radar_of(asked: "Options", background: "RadarCube | None") -> "RadarConfig":
-    """The radar: that of the background recording where no other is given."""
+    """The radar, from the options or the background recording.
+
+    Args:
+        asked: The options.
+        background: The background recording, if any.
+    """
     from dataclasses import replace
 
     from mmweaver.core.range_window import chosen_range
@@ -41,7 +50,13 @@ def radar_of(asked: "Options", background: "RadarCube | None") -> "RadarConfig":
 
 
 def weaver_of(asked: "Options", radar: "RadarConfig", listener: "Callable[[str], object] | None" = None) -> "Weaver":
-    """The generator that the options ask for."""
+    """The generator for the options.
+
+    Args:
+        asked: The options.
+        radar: The radar.
+        listener: Called with the name of each stage as it begins.
+    """
     from mmweaver.io.radar_file import load_firmware
     from mmweaver.io.ti_calibration import read_ti_calibration
     from mmweaver.models.methods import Learned, Physics
@@ -72,7 +87,13 @@ def weaver_of(asked: "Options", radar: "RadarConfig", listener: "Callable[[str],
 
 
 def room_of(asked: "Options", weaver: "Weaver", background: "RadarCube | None") -> "Room":
-    """The room with its landmarks and its background recording."""
+    """The room with its landmarks and its background recording.
+
+    Args:
+        asked: The options.
+        weaver: Reader of rooms.
+        background: The background recording, if any.
+    """
     room = asked.read_room(weaver)
     room = room.with_landmarks(*asked.landmark) if asked.landmark else room
     return room if background is None else room.with_background(background, came_from=asked.background)

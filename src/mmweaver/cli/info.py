@@ -21,7 +21,11 @@ class Options(Printed):
 
 
 def run(asked: Options) -> int:
-    """Prints the description on stdout. Raises InputError where the file is damaged."""
+    """Prints the description on stdout.
+
+    Raises:
+        InputError: If the file is damaged.
+    """
     from mmweaver.compression.lossless_file import describe_lossless, is_lossless_file
     from mmweaver.compression.mmw_codec import describe_mmw
 

@@ -1,4 +1,4 @@
-"""The mmweaver command: one line for what went wrong, status 2 for bad input, and never a traceback for it."""
+"""The mmweaver command: one line per error, status 2 for bad input, and no traceback."""
 
 import gc
 import json
@@ -14,7 +14,7 @@ from mmweaver.core.version import __version__
 if TYPE_CHECKING:
     from mmweaver.cli.arguments import General, Parser
 
-# in the order of the help; each is a module with Options, run and EXAMPLES, imported where it is needed
+# in the order of the help; each is a module with Options, run and EXAMPLES, imported on demand
 COMMANDS = {
     "generate": "generate the signal of a person in the room of a photo",
     "sample": "write files to try the other commands with",
@@ -52,21 +52,28 @@ EXAMPLES = """examples:
   mmweaver compress walk/radar.npz -o walk.mmw --bytes 10000
 """
 BAD_INPUT, INTERRUPTED, READER_GONE = 2, 130, 141
-AGAIN_S = 0.05  # until an interruption that came at a bad time is tried again
+AGAIN_S = 0.05  # delay before a deferred interruption is raised again
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Runs the command and gives its exit status: 0, 2 for bad input, 130 when interrupted, 141 for a closed pipe."""
+    """Runs a command.
+
+    Args:
+        argv: The words; by default those of the process.
+
+    Returns:
+        Exit status: 0, 2 for bad input, 130 when interrupted, 141 for a closed pipe.
+    """
     if argv is not None:
         return _status(list(argv))
     try:
-        gc.set_threshold(400_000, 20, 100)  # of 0.7 million objects few are garbage: a tenth less CPU time
+        gc.set_threshold(400_000, 20, 100)  # few of 0.7 million objects are garbage: saves a tenth of the CPU time
         _stop_cleanly()
         return _status(sys.argv[1:])
-    except KeyboardInterrupt:  # before the command began, or again while the first was reported
+    except KeyboardInterrupt:  # before the command began, or again while the first one was reported
         return INTERRUPTED
     finally:
-        gc.freeze()  # the process ends: nobody need search those objects for garbage, which takes half a second
+        gc.freeze()  # the process ends: saves a last garbage collection of half a second
 
 
 def _status(argv: list[str]) -> int:
@@ -94,14 +101,16 @@ def _status(argv: list[str]) -> int:
 
 
 def build_parser() -> "Parser":
-    """The whole command line."""
+    """The parser of the whole command line."""
     return parser_of(*COMMANDS, rare=True)[0]
 
 
 def parser_of(*names: str, rare: bool = False) -> "tuple[Parser, dict[str, tuple[Parser, type[General]]]]":
-    """The parser, which knows the options of these commands, and each one's own parser and options.
+    """The parser with the options of some commands, and each command's own parser and options.
 
-    `rare`: the help shows rare options, too.
+    Args:
+        *names: Names of the commands.
+        rare: Whether the help shows rare options.
     """
     from mmweaver.cli.arguments import Parser, add_options
 
@@ -148,7 +157,7 @@ def _fail(message: str) -> int:
 
 
 def _kept() -> str:
-    """What an interrupted command has written completely."""
+    """Description of what an interrupted command has written completely."""
     from mmweaver.core.atomic_files import written
 
     names = [str(path) for path in written()]
@@ -158,7 +167,7 @@ def _kept() -> str:
 
 
 def _stop_cleanly() -> None:
-    """An orderly end of the process, and a closed terminal, interrupt as Ctrl-C does, so that nothing is left over."""
+    """Makes termination and a closed terminal interrupt like Ctrl-C, so that nothing is left behind."""
     import signal
 
     for name in ("SIGINT", "SIGTERM", "SIGHUP"):
@@ -168,7 +177,7 @@ def _stop_cleanly() -> None:
 
 
 def _interrupt(*_: object) -> None:
-    """Raises KeyboardInterrupt; while PyTorch starts, which would abort the process, as soon as it has started."""
+    """Raises KeyboardInterrupt, deferred while PyTorch is being imported, which would abort the process."""
     torch = sys.modules.get("torch")
     if torch is not None and getattr(torch.__spec__, "_initializing", False):
         import _thread
@@ -180,7 +189,7 @@ def _interrupt(*_: object) -> None:
 
 
 def _close_stdout() -> None:
-    """Nobody reads on: what is still buffered goes nowhere, quietly."""
+    """Discards buffered output quietly, since the reader has closed the pipe."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     try:
         os.dup2(nowhere, sys.stdout.fileno())

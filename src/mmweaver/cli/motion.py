@@ -75,7 +75,7 @@ def run(asked: Options) -> int:
 
 
 def _write_files(asked: Options, pose: "PoseSequence") -> None:
-    """Writes joints and picture, both or none."""
+    """Writes joints and picture, both or neither."""
     from mmweaver.core.atomic_files import atomic_files
     from mmweaver.io.npz_files import write_pose_npz
     from mmweaver.viz.motion_strip import draw_strip
@@ -90,7 +90,7 @@ def _write_files(asked: Options, pose: "PoseSequence") -> None:
 
 
 def _check_files(asked: Options) -> None:
-    """What is cheap to refuse is refused before anything is made."""
+    """Rejects impossible outputs before anything is computed."""
     from mmweaver.core.output_checks import check_output_file
 
     for file in asked.out or ():

@@ -19,7 +19,15 @@ class Printed(General):
     quiet: bool = option("print nothing but errors", default=False, is_setting=False)
 
     def report(self, summary: Any, *lines: str) -> int:
-        """Prints a summary for machines or lines for people; the exit status."""
+        """Prints a summary, as JSON or as lines of text.
+
+        Args:
+            summary: Values for JSON.
+            *lines: Lines of text.
+
+        Returns:
+            Exit status 0.
+        """
         if self.json:
             print(json.dumps(summary, indent=2, ensure_ascii=False))
         elif not self.quiet:
@@ -37,14 +45,14 @@ class Quiet(General):
 
 @options
 class Written(Printed):
-    """For commands that write files, too."""
+    """For commands that write files and print a summary."""
 
     overwrite: bool = option("replace files of an earlier run", default=False, is_setting=False)
 
 
 @options
 class Ranges:
-    """Which ranges are kept, or looked at."""
+    """Range window."""
 
     range_m: tuple[float, float] | None = option(
         "metres to keep (default: a preset's own window; all of a .cfg, up to 4 MiB per frame)",
@@ -56,7 +64,7 @@ class Ranges:
 
 @options
 class RadarSettings(General):
-    """What a radar's file leaves open; the command has the radar itself."""
+    """Settings that a radar's file does not contain; the command has the radar itself."""
 
     radar_set: list[Setting] | None = option(
         "what the radar's file leaves open: subframe=N of a .cfg or mmWave Studio file, antennas=NAME|JSON (isk, boost,"
@@ -65,19 +73,27 @@ class RadarSettings(General):
     )
 
     def radar_name(self, default: str | None = None) -> str | None:
-        """The radar with its settings behind it, as `load_radar` reads them. Raises InputError."""
+        """Name of the radar followed by its settings, as `load_radar` reads them.
+
+        Raises:
+            InputError: For settings without a radar.
+        """
         return radar_name(getattr(self, "radar", None) or default, self.radar_set)
 
 
 @options
 class RadarChoice(RadarSettings):
-    """A radar, and what its file leaves open."""
+    """A radar, and settings that its file does not contain."""
 
     radar: Source | None = option("preset, TI .cfg or radar.json", "NAME|FILE")
 
 
 def radar_name(name: str | None, settings: list[Setting] | None) -> str | None:
-    """A radar with settings behind it. Raises InputError for settings of none."""
+    """Name of a radar followed by its settings.
+
+    Raises:
+        InputError: For settings without a radar.
+    """
     if not settings:
         return name
     if name is None:
@@ -87,7 +103,7 @@ def radar_name(name: str | None, settings: list[Setting] | None) -> str | None:
 
 @options
 class Layout:
-    """How a DCA1000's .bin is laid out."""
+    """Layout of a DCA1000's .bin."""
 
     iq_order: IqOrder | None = option(
         "order of I and Q in the .bin: I I Q Q, Q Q I I or I Q I Q (default: as the .cfg or mmWave Studio file says,"
@@ -98,7 +114,7 @@ class Layout:
 
 @options
 class Samples(RadarChoice, Layout):
-    """How raw samples are to be read, which do not bring their radar."""
+    """Reading of raw samples, which do not state their radar."""
 
     layout: str | None = option(
         "what a .npy holds: its axes in their order, such as frame,loop,tx,rx,sample, or whose it is: hupr (a frame or"
@@ -107,7 +123,7 @@ class Samples(RadarChoice, Layout):
     )
 
     def reading(self) -> dict[str, Any]:
-        """The arguments of the readers of recordings that say how samples lie."""
+        """Arguments of the readers of recordings that describe the layout of samples."""
         is_axes = self.layout is not None and "," in self.layout
         return {
             "layout": None if is_axes else self.layout,
@@ -119,7 +135,7 @@ class Samples(RadarChoice, Layout):
 
 @options
 class BoardChoice:
-    """The board whose errors a signal has."""
+    """Board whose errors a signal has."""
 
     board: Source | None = option(
         "the board whose errors the signal has: typical, sampled by the seed from the spread of recorded boards"
@@ -131,7 +147,7 @@ class BoardChoice:
 
 @options
 class PointChoice:
-    """The point cloud."""
+    """Point detector."""
 
     points: str = option(
         "point cloud: cfar, ours, or firmware, as TI's out-of-box demo would report it with the cfarCfg, peakGrouping,"

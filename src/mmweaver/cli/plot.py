@@ -46,7 +46,11 @@ class Options(Samples):
 
 
 def run(asked: Options) -> int:
-    """Draws and prints the name of the picture. Raises InputError."""
+    """Draws the features and prints the name of the picture.
+
+    Raises:
+        InputError: For a signal that cannot be read, or unknown features or frames.
+    """
     check_output_file(asked.out, overwrite=asked.overwrite, inputs=[asked.signal])
     if asked.out.suffix.lower() not in ("", ".png"):
         raise InputError(f"{asked.out}: pictures are PNG files; name it {asked.out.stem}.png")

@@ -25,7 +25,11 @@ class Options(Written):
 
 
 def run(asked: Options) -> int:
-    """Reads the points and writes them. Raises InputError."""
+    """Reads the points and writes them.
+
+    Raises:
+        InputError: If they cannot be read or written.
+    """
     import numpy as np
 
     from mmweaver.core.atomic_files import atomic_file

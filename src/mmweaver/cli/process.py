@@ -45,7 +45,11 @@ class Options(Samples, Ranges, PointChoice, Written):
 
 
 def run(asked: Options) -> int:
-    """Processes the recording and writes the results. Raises InputError."""
+    """Processes the recording and writes the results.
+
+    Raises:
+        InputError: For a recording or options that cannot be used.
+    """
     from mmweaver.cli.progress import StageBar
     from mmweaver.cli.summary import machine_summary, summary_lines
     from mmweaver.core.output_checks import check_output_folder

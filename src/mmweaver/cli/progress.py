@@ -1,4 +1,4 @@
-"""A progress bar for people: only on a terminal, only for what takes over two seconds."""
+"""A progress bar, shown only on a terminal and only for stages of more than two seconds."""
 
 import sys
 from types import TracebackType
@@ -11,7 +11,7 @@ PATIENCE_S = 2.0
 
 
 class StageBar:
-    """Shows which stage is running; silent where stderr is no terminal or `quiet` is set."""
+    """Shows the current stage; silent if stderr is not a terminal, or `quiet` is set."""
 
     def __init__(self, num_stages: int, *, quiet: bool = False):
         self._num_stages, self._silent = num_stages, quiet or not sys.stderr.isatty()
@@ -32,7 +32,13 @@ class StageBar:
             self._bar.update()
 
     def progress(self, stage: str, done: int, total: int) -> None:
-        """Hears how much of a stage is done."""
+        """Updates the progress of a stage.
+
+        Args:
+            stage: Name of the stage.
+            done: Amount done.
+            total: Total amount.
+        """
         if self._bar is None or self._bar.desc != stage:
             self(stage)
         if self._bar is not None:

@@ -49,7 +49,11 @@ class Options(Printed):
 
 
 def run(asked: Options) -> int:
-    """Does the action. Raises InputError for options that another action has, and for bad files."""
+    """Trains, scores or runs a recogniser.
+
+    Raises:
+        InputError: For options of another action, and for files that cannot be used.
+    """
     action = asked.action
     needed = {"train": "out", "score": "recordings", "run": "points"}[action]
     if getattr(asked, needed) is None:

@@ -1,4 +1,4 @@
-"""What mmweaver recognise says to people: what was trained, and how well it does."""
+"""Output of mmweaver recognise: what was trained, and its scores."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from mmweaver.recognition.recogniser import Recogniser
 
-LEAST_CONFUSED, MOST_LISTED = 0.1, 3  # of the windows of a label; confusions
+LEAST_CONFUSED, MOST_LISTED = 0.1, 3  # minimum share of the windows of a label; number of confusions
 
 
 def training_lines(model: "Recogniser", out: Path) -> list[str]:
-    """What was trained and what to expect of it."""
+    """Summary of a training, with the expected accuracy."""
     meta, expected = model.meta, model.meta["generated_on_generated"]
     text = [
         f"wrote {out}: {len(model.labels)} activities, {meta['generated_windows']} generated windows,"
@@ -32,7 +32,7 @@ def training_lines(model: "Recogniser", out: Path) -> list[str]:
 
 
 def confused_lines(labels: Sequence[str], confusion: list[list[int]]) -> list[str]:
-    """The labels that are mistaken most often, each with what for; those of fewer than a tenth of the windows not."""
+    """The most frequent confusions between labels, if they concern at least a tenth of the windows."""
     shares = [
         (row[other] / max(sum(row), 1), label, labels[other])
         for label, row in zip(labels, confusion, strict=True)
@@ -46,12 +46,12 @@ def confused_lines(labels: Sequence[str], confusion: list[list[int]]) -> list[st
 
 
 def contradiction_lines(found: list[str]) -> list[str]:
-    """What recordings show that cannot be if the task is right."""
+    """Contradictions between recordings and the task."""
     return [f"  the recordings contradict the task: {one}" for one in found]
 
 
 def score_lines(scores: dict[str, Any]) -> list[str]:
-    """Scores with baseline, confusion matrix, and how far the recordings lie from what was generated."""
+    """Scores with baseline, confusion matrix, and distance of the recordings from generated ones."""
     text = [f"{scores['recordings']} recordings", *accuracy_lines(scores)]
     expected = scores["generated_on_generated"]
     if expected:

@@ -31,7 +31,11 @@ class Options(Written):
 
 
 def run(asked: Options) -> int:
-    """Checks all that is cheap, then makes all rooms or none. Raises InputError."""
+    """Checks everything that is fast to check, then makes all rooms or none.
+
+    Raises:
+        InputError: For options that cannot be used.
+    """
     from mmweaver.cli.progress import StageBar
     from mmweaver.core.atomic_files import staged_folder
     from mmweaver.core.output_checks import check_output_folder

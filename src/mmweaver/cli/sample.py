@@ -54,7 +54,7 @@ def _write(out: Path, source: Path, bundled: list[str], *, overwrite: bool) -> N
 
 
 def _record_empty_room(folder: Path) -> None:
-    """Simulates RECORDED_S seconds of the bundled room with nobody in it, by the radar that lies in the folder."""
+    """Simulates RECORDED_S seconds of the empty bundled room, by the radar in the folder."""
     from mmweaver.io.dca1000 import write_bin
     from mmweaver.weaver.front_door import Weaver
 

@@ -10,7 +10,7 @@ from mmweaver.core.errors import InputError
 if TYPE_CHECKING:
     from mmweaver.cli.generate import Options
 
-PART_FRAMES = 20  # what a kill may lose
+PART_FRAMES = 20  # maximum loss if the process is killed
 OF_SENTENCE = ("text", "refused", "plan", "clauses")
 STANDARD_INPUT = "-"
 NOT_OF_STREAMS = {
@@ -24,7 +24,18 @@ NOT_OF_STREAMS = {
 
 
 def run_stream(asked: "Options", out: Path) -> int:
-    """Writes the stream into `out` until sentences end, --frames are reached or Ctrl+C. Raises InputError."""
+    """Writes the stream until sentences end, --frames are reached or Ctrl+C.
+
+    Args:
+        asked: Options of the command.
+        out: Folder of the stream.
+
+    Returns:
+        Exit status.
+
+    Raises:
+        InputError: For options that streams do not support, or a first sentence that cannot be carried out.
+    """
     from mmweaver.cli.generate_inputs import radar_of, read_background, room_of, weaver_of
     from mmweaver.core.output_checks import check_output_folder, is_empty
     from mmweaver.core.staging import sweep
@@ -86,7 +97,7 @@ def run_stream(asked: "Options", out: Path) -> int:
 
 
 def _check(asked: "Options") -> None:
-    """Raises InputError for options that streams do not have, or where there is no sentence."""
+    """Checks the options; InputError for those that streams do not support, or without a sentence."""
     for name, option in NOT_OF_STREAMS.items():
         if getattr(asked, name):
             raise InputError(f"--stream takes sentences; leave out --{option}, or --stream")
@@ -95,7 +106,7 @@ def _check(asked: "Options") -> None:
 
 
 def _sentences(asked: "Options") -> Iterable[str]:
-    """The sentences, from the command line, a file, or standard input as they come."""
+    """The sentences, from the command line, a file, or live from standard input."""
     from mmweaver.cli.batch import read_texts
     from mmweaver.io.stream_folder import sentences_of
 

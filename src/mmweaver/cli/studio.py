@@ -38,7 +38,11 @@ class Options(General):
 
 
 def run(asked: Options) -> int:
-    """Serves until interrupted. Raises InputError for a port that is taken or a room that is none."""
+    """Serves until interrupted.
+
+    Raises:
+        InputError: If the port is taken, or a folder is not a room.
+    """
     if not 0 <= asked.port <= 65535:
         raise InputError(f"the port must be 0 to 65535, not {asked.port}")
     if asked.workers is not None and not 1 <= asked.workers <= 64:

@@ -9,7 +9,7 @@ MADE_BY = {"weaver": "weaver, the network", "physics": "physics"}
 
 
 def machine_summary(out: str | Path, meta: dict[str, Any]) -> dict[str, Any]:
-    """The same for machines: paths of the files, assumptions, seconds of each stage."""
+    """The summary as values for JSON: paths of the files, assumptions, seconds of each stage."""
     files = {name: str(Path(out) / name) for name in meta["files"]}
     method = {"method": meta["method"]} if "method" in meta else {}
     method |= {"warnings": meta["warnings"]} if "warnings" in meta else {}
@@ -17,7 +17,7 @@ def machine_summary(out: str | Path, meta: dict[str, Any]) -> dict[str, Any]:
 
 
 def summary_lines(out: str | Path, meta: dict[str, Any], *, verbose: bool = False) -> list[str]:
-    """A line each for the files, the radar, the people and the assumptions; the usual of these only if `verbose`."""
+    """One line each for the files, the radar, the people and the assumptions; usual ones only with `verbose`."""
     lines = [f"wrote {Path(out)} in {sum(meta['seconds'].values()):.1f} s"]
     paths = {name: str(Path(out) / name) for name in meta["files"]}
     width = max(map(len, paths.values()))

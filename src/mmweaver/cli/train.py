@@ -90,12 +90,12 @@ class Options(Printed):
 
     @property
     def mode(self) -> str:
-        """The recipe, or fine-tuning of recipe weaver on recordings."""
+        """The recipe, or "fine-tuning" of recipe weaver on recordings."""
         return "fine-tuning" if self.recordings and self.recipe == "weaver" else self.recipe
 
     @property
     def settings(self) -> dict[str, Any]:
-        """The settings of the recipe that are given."""
+        """The given settings of the recipe."""
         names = {"batch": "batch_size"}
         given = {
             names.get(name, name): getattr(self, name)
@@ -105,7 +105,11 @@ class Options(Printed):
 
 
 def run(asked: Options) -> int:
-    """Trains and writes the weights. Raises InputError."""
+    """Trains a network and writes its weights.
+
+    Raises:
+        InputError: For options or data that cannot be used.
+    """
     _check(asked)
     from mmweaver.core.output_checks import check_output_folder
     from mmweaver.training.device import ComputeDevice
@@ -137,7 +141,7 @@ def run(asked: Options) -> int:
 
 
 def _check(asked: Options) -> None:
-    """Raises InputError for what a recipe cannot do, and for numbers outside their limits."""
+    """Checks the options; InputError for those that a recipe does not support, and for values outside their limits."""
     recipe = asked.mode
     check_mode(asked, recipe, USES)
     missing = next((name for name in NEEDS[recipe].split() if getattr(asked, name) is None), None)
@@ -248,7 +252,7 @@ def _summary(file: Path | None, trainer: "Trainer") -> dict[str, Any]:
 
 @contextmanager
 def _listening(asked: Options, place: "ComputeDevice", steps: int, is_quiet: bool) -> "Iterator[dict[str, Any]]":
-    """The arguments that every training takes, with a listener that shows each step in a bar."""
+    """Arguments common to all trainings, with a listener that shows each step in a bar."""
     from tqdm import tqdm
 
     with tqdm(total=steps, unit="step", disable=is_quiet or None) as bar:
@@ -268,7 +272,7 @@ def _listening(asked: Options, place: "ComputeDevice", steps: int, is_quiet: boo
 
 
 def _start(source: str) -> "tuple[dict[str, Any], WeightsCard]":
-    """The weights to start from, and what their file says of them."""
+    """Weights to start from, and their card."""
     from mmweaver.models.hub import find_weights
     from mmweaver.models.weights import load_weights
 

@@ -1,4 +1,4 @@
-"""mmweaver verify: whether files are still as they were written, and which command makes damaged ones anew."""
+"""mmweaver verify: whether files are unchanged since they were written, and which command regenerates damaged ones."""
 
 from pathlib import Path
 
@@ -25,7 +25,14 @@ class Options(Printed):
 
 
 def run(asked: Options) -> int:
-    """Prints what is damaged; returns 0 or 1. Raises InputError where nothing can be verified."""
+    """Prints what is damaged.
+
+    Returns:
+        0 if nothing is, otherwise 1.
+
+    Raises:
+        InputError: If nothing can be verified.
+    """
     from mmweaver.datasets.verification import verify
 
     found = verify(asked.path)

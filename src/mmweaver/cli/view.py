@@ -31,7 +31,11 @@ class Options(General):
 
 
 def run(asked: Options) -> int:
-    """Writes the page. Raises InputError for a folder that holds no result."""
+    """Writes the page.
+
+    Raises:
+        InputError: If the folder contains no result.
+    """
     out = asked.out or asked.folder / "view.html"
     check_output_file(out, overwrite=asked.overwrite)
     from mmweaver.io.stored_result import read_result
@@ -48,7 +52,7 @@ def run(asked: Options) -> int:
 
 
 def _room(stored: "StoredResult") -> "Playback | None":
-    """The room of a generated result, where its files are still what they were; a result folder holds none."""
+    """The room of a generated result, read again if its files are unchanged; a result folder contains none."""
     inputs = stored.meta.get("inputs")
     if not stored.poses or not isinstance(inputs, dict):
         return None

@@ -338,7 +338,15 @@ class CellPlaces:
         self._index[self.at] = np.arange(len(self.at))
 
     def of(self, at: Integers, offset: Sequence[int]) -> Integers:
-        """Indices of the cells at an offset from flat places; the number of cells where there is none."""
+        """Indices of neighbours of open cells.
+
+        Args:
+            at: Flat places (n,) of the cells.
+            offset: Offset in time, range and Doppler.
+
+        Returns:
+            Indices (n,) into the list of open cells; the number of cells where the neighbour is closed.
+        """
         return self._index[at + self._flat(offset)]
 
     def phase_cells(self, phase: Phase, stride: int) -> Integers:

@@ -1,6 +1,6 @@
-"""Encodes the frames of a chunk in a given mode at a given step, and estimates what other modes would cost.
+"""Encodes the frames of a chunk in a given mode at a given step, and estimates the cost of other modes.
 
-A mode is a transform, with or without scatterers, and with or without a layer of its own for cells without signal.
+A mode is a transform, with or without scatterers, and with or without a separate layer for cells without signal.
 """
 
 import math
@@ -63,10 +63,10 @@ REFINED_BELOW, REFINED_STEPS, SAME_COUNT = 0.85, 3, 0.15  # see `_kept_points`
 SAME_NOISE = 0.3  # difference of log(step) up to which the noise layer of a chunk with scatterers is reused
 MIN_GAIN = 0.03  # antenna gains that differ less from 1 are dropped
 BYTES_PER_POINT = 6.0  # few, well-fitted scatterers are worth more than many: the residual is coded separately
-POINTS_PER_FRAME, POINTS_OF_FEW_FRAMES = 35, (50, 250)  # of few frames: as many each, as many in all
+POINTS_PER_FRAME, POINTS_OF_FEW_FRAMES = 35, (50, 250)  # for few frames: per frame, and in total
 POINT_GAIN = 12.0  # energy that a scatterer must explain, in noise powers of a cell
 FEW_FRAMES, FIT_OF_FEW_FRAMES, FIT = 4, (16, 3, 1.0), (22, 1, 1.3)  # stages, last steps and growth of a fit
-DEVIATIONS, MARGIN = 3.5, 3  # of noise, by which cells that scatterers are fitted to exceed it; cells around them
+DEVIATIONS, MARGIN = 3.5, 3  # threshold of cells for the fit in standard deviations of noise; cells around them
 LN2 = 0.6931  # median of a chi-squared with two degrees of freedom over its mean
 
 
@@ -76,14 +76,14 @@ class ChunkMode:
 
     transform: TransformChoice = field(default_factory=TransformChoice)
     with_points: bool = False
-    with_noise: bool = False  # cells without signal in a layer of their own; everything, where all cells are active
+    with_noise: bool = False  # cells without signal in a separate layer; everything if all cells are active
 
 
 @dataclass(frozen=True, kw_only=True)
 class CodedLayers:
-    """Static layer and scatterers, coded at a step, and the `target` that they leave (frame, range, doppler, antenna).
+    """Static layer and scatterers coded at a step, and the residual `target` (frame, range, doppler, antenna).
 
-    `front`: bytes before the stream; `num_values` real numbers are in all; `near`: see `nearness`.
+    `front` are the bytes before the stream, `num_values` the number of real parameters; for `near` see `nearness`.
     """
 
     target: np.ndarray
@@ -96,22 +96,27 @@ class CodedLayers:
 
 @dataclass(frozen=True, kw_only=True)
 class Scale:
-    """What all chunks of a file share: largest magnitude, and the power above which a cell is active."""
+    """Scale common to all chunks of a file: largest magnitude, and the power above which a cell is active."""
 
     peak: float
     active_power: float
 
     @classmethod
     def of(cls, cube: RadarCube) -> "Scale":
-        """The scale of a cube; one of zeros has peak 1."""
+        """The scale of a cube; a cube of zeros has peak 1."""
         return cls(peak=float(np.abs(cube.values).max()) or 1.0, active_power=active_power(cell_power(cube.values)))
 
 
 class ChunkEncoder:
-    """Encodes a stretch of frames at any step, which is relative to the peak of the file."""
+    """Encodes consecutive frames at any step, which is relative to the peak of the file."""
 
     def __init__(self, cube: RadarCube, scale: Scale):
-        """`cube`: the frames of the chunk alone."""
+        """Converts the frames to working frames.
+
+        Args:
+            cube: The frames of the chunk alone.
+            scale: Scale of the file.
+        """
         peak = np.float32(scale.peak)
         self.values, self.frames, self.peak = cube.values, ChunkFrames.from_cube(cube), float(peak)
         self.target = self.frames.working(cube.values / peak)  # working frames (frame, range, doppler, antenna)
@@ -334,14 +339,24 @@ def noise_power(cube: RadarCube) -> float:
 
 
 def split(num_frames: int, length: int) -> list[range]:
-    """Divides frames into parts of about equal length, of at most `length` frames."""
+    """Divides frames into parts of about equal length.
+
+    Args:
+        num_frames: Number of frames.
+        length: Maximum length of a part.
+    """
     parts = -(-num_frames // length)
     bounds = [round(part * num_frames / parts) for part in range(parts + 1)]
     return [range(first, last) for first, last in pairwise(bounds)]
 
 
 def some_frames(cube: RadarCube, part: Sequence[int]) -> RadarCube:
-    """The part of a cube with consecutive frames."""
+    """The part of a cube with consecutive frames.
+
+    Args:
+        cube: The cube.
+        part: Numbers of the frames.
+    """
     chosen = slice(part[0], part[-1] + 1)
     grid = replace(cube.grid, frame_time_s=cube.grid.frame_time_s[chosen])
     return replace(cube, values=cube.values[chosen], grid=grid)

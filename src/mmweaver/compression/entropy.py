@@ -155,7 +155,12 @@ class BitModel:
         return self.ones[context] / total, total
 
     def learn(self, context: Integers, bits: Integers) -> None:
-        """Counts bits (n,) in their contexts (n,)."""
+        """Counts bits.
+
+        Args:
+            context: Context (n,) of each bit.
+            bits: Bits (n,).
+        """
         num = len(self.total)
         self.ones += np.bincount(context, weights=bits, minlength=num)
         self.total += np.bincount(context, minlength=num)
@@ -205,7 +210,16 @@ class NumberModel:
         self.octaves = [Mixture([BitModel(num_contexts, 0.5, 2.0)]) for _ in range(MAX_OCTAVES)]
 
     def code(self, stream: BitStream, context: Integers, values: Integers) -> Integers:
-        """Codes integers (n,) given a context (n,); returns them."""
+        """Codes integers.
+
+        Args:
+            stream: Encoder or decoder.
+            context: Context (n,) of each integer.
+            values: Integers (n,); ignored when decoding.
+
+        Returns:
+            The integers.
+        """
         out = _unary(stream, self.models, context, values)
         rest = np.flatnonzero(out == self.steps)
         if len(rest):

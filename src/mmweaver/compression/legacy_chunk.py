@@ -31,7 +31,7 @@ from mmweaver.signal.point_response import PointResponse
 
 Levels = Int[np.ndarray, "2 beam frame range doppler"]
 Cells = Int[np.ndarray, "frame range doppler"]
-Integers = np.ndarray  # (n,) int64; called thousands of times a cube
+Integers = np.ndarray  # (n,) int64; called thousands of times per cube
 
 # frames, hop, peak, step, centroids of 1 and of more, noise, flags
 PREFIX = struct.Struct("<HHffBBBB")
@@ -47,7 +47,7 @@ NUM_SUMS, NUM_TRENDS, NUM_OPEN, NUM_AROUND = (
 )
 NUM_NEAR = 6
 CAP = 4000
-FAR = 160  # eighths of a level; from this predicted magnitude on, the deviation from the prediction is coded
+FAR = 160  # eighths of a level; for larger predictions the deviation is coded
 MARGIN = 2
 CELLS_AT_ONCE = 512  # approximate number of map cells coded together
 BLOCK_ROWS = 16  # rows of levels coded together
@@ -60,15 +60,15 @@ MAX_RUNGS = len(RUNGS) - 2
 
 @one_line_errors
 def decode_legacy_chunk(data: bytes, config: RadarConfig, *, with_residual: bool = True) -> DecodedChunk:
-    """Decodes a chunk.
+    """Decodes a chunk of version 1 or 2.
 
     Args:
-        data: the chunk.
-        config: radar of the file.
-        with_residual: False for its layers alone.
+        data: The chunk.
+        config: Radar of the file.
+        with_residual: Whether the residual is decoded; otherwise static layer and scatterers alone.
 
     Raises:
-        InputError: for a malformed chunk.
+        InputError: For a malformed chunk.
     """
     num_frames, hop, peak, step, one, more, noise, flags = PREFIX.unpack_from(data)
     if not (num_frames and hop < config.num_loops and step > 0 and math.isfinite(step) and math.isfinite(peak)):
@@ -134,7 +134,13 @@ class LegacyMapCoder:
         self.fine = Mixture([BitModel(n * n, 0.5, 0.5), BitModel(NUM_NEAR * shape[2], 0.5, 0.5)])
 
     def code(self, stream: BitStream, classes: Cells, near: Cells) -> None:
-        """Encodes `classes` (CLOSED, COARSE or FINE), or fills them in when decoding. `near`: see `nearness`."""
+        """Encodes classes, or fills them in when decoding.
+
+        Args:
+            stream: Encoder or decoder.
+            classes: CLOSED, COARSE or FINE per cell (frame, range, doppler).
+            near: Strength of the nearest scatterer, see `nearness`.
+        """
         frames, num_range, num_doppler = self.shape
         padded = np.zeros((frames, num_range + 2, num_doppler + 2), np.int64)
         earlier = np.zeros((2, num_range + 2, num_doppler + 2), np.int64)
@@ -207,7 +213,7 @@ def _class_of(count: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, kw_only=True)
 class LegacyGroup:
-    """Open cells that are coded together: their places in the padded planes and their fixed contexts."""
+    """Open cells that are coded together: their positions in the padded planes and their fixed contexts."""
 
     at: Integers  # flat index in a padded (frame, range, doppler)
     phase: int
@@ -220,7 +226,7 @@ class LegacyGroup:
 class LegacyLevelCoder:
     """Codes the levels of cells: `code` encodes them, or fills them in when decoding.
 
-    `is_dense`: the models of version 1, for all cells; else those of version 2, for open ones.
+    `is_dense` selects the models of version 1, for all cells, instead of those of version 2, for open ones.
     """
 
     def __init__(self, shape: tuple[int, int, int, int], *, is_dense: bool):
@@ -234,7 +240,7 @@ class LegacyLevelCoder:
         self.deviation = NumberModel(n, STEPS, 0.8) if is_dense else LadderModel([n, n], 0.8)
 
     def code(self, stream: BitStream, levels: Levels, classes: Cells, near: Cells) -> None:
-        """Levels (part, beam, frame, range, doppler), changed in place when decoding."""
+        """Encodes levels (part, beam, frame, range, doppler), or changes them in place when decoding."""
         beams, frames, num_range, num_doppler = self.shape
         wide = num_doppler + 2 * MARGIN
         padded = np.zeros((2, beams, frames, num_range + 2 * MARGIN, wide), np.int64)
@@ -370,16 +376,16 @@ def _spread(before: np.ndarray) -> np.ndarray:
 
 
 class LadderModel:
-    """Non-negative integers with mixed contexts: an adaptive bit for each rung of a ladder, then uniform bits.
+    """Non-negative integers with mixed contexts: an adaptive bit per rung of a ladder, then uniform bits.
 
-    Rungs are 0, 1, 2, 3, then two to an octave: 4-5, 6-7, 8-11, 12-15, 16-23, ...
+    Rungs are 0, 1, 2, 3, then two per octave: 4-5, 6-7, 8-11, 12-15, 16-23, ...
     """
 
     def __init__(self, num_contexts: list[int], probability: float = 0.4):
         self.rungs = [Mixture([BitModel(num, probability, 2.0) for num in num_contexts]) for _ in range(MAX_RUNGS)]
 
     def code(self, stream: BitStream, contexts: list[Integers], values: Integers) -> Integers:
-        """Codes numbers given one context per model and number."""
+        """Codes numbers given one context per model and number; returns them."""
         wanted = np.searchsorted(RUNGS, values, side="right") - 1
         rung = np.zeros(len(values), np.int64)
         active = np.arange(len(values))
@@ -401,7 +407,7 @@ class LadderModel:
 
 
 class _RowPointCoder(PointCoder):
-    """Codes the number of scatterers in each cell row by row, given those of the frame before."""
+    """Codes the number of scatterers per cell row by row, given those of the preceding frame."""
 
     def __init__(self, shape: tuple[int, int, int], steps: PointSteps, num_directions: int, moves: int):
         """`moves`: range cells that a scatterer moves per Doppler cell and frame, times 256."""

@@ -48,7 +48,12 @@ class ErrorSums:
     error: float = 0.0
 
     def add(self, truth: np.ndarray, decoded: np.ndarray) -> None:
-        """Adds a piece: original and decoded values (frame, range, doppler, antenna)."""
+        """Adds the errors of a piece.
+
+        Args:
+            truth: Original values (frame, range, doppler, antenna).
+            decoded: Decoded values of the same shape.
+        """
         is_active = active_mask(truth)
         signal = np.sum(np.square(np.abs(truth), dtype=np.float64), axis=-1)
         error = np.sum(np.square(np.abs(truth - decoded), dtype=np.float64), axis=-1)

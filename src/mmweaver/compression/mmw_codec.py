@@ -266,6 +266,11 @@ def grid_of_file(file: MmwFile) -> CubeGrid:
 def check_encodable(cube: RadarCube, num_bytes: int | None, quality_db: float | None) -> None:
     """Checks cube and request of a compression.
 
+    Args:
+        cube: The cube.
+        num_bytes: Maximum size of the file, or None.
+        quality_db: Signal-to-error ratio in active cells, or None.
+
     Raises:
         InputError: For a request that no file meets or that readers would reject, and for an unsuitable cube.
     """

@@ -81,7 +81,7 @@ def signal_filled(
 ) -> Complex[Array, "frame range doppler antenna"]:
     """Replaces active cells by a continuation of the noise around them.
 
-    Alternates between smoothing and restoring the other cells (Papoulis-Gerchberg).
+    Alternates between smoothing in the DCT domain and restoring the other cells.
 
     Args:
         values: Working frames (frame, range, doppler, antenna).
@@ -124,7 +124,15 @@ def to_noise(
 def from_noise(
     coefficients: Complex[Array, "beam frame range doppler"], beams: Complex[Array, "beam antenna"]
 ) -> Complex[Array, "frame range doppler antenna"]:
-    """The inverse of `to_noise`."""
+    """The inverse of `to_noise`.
+
+    Args:
+        coefficients: Coefficients (beam, frame, range, doppler).
+        beams: Unitary matrix (beam, antenna).
+
+    Returns:
+        Working frames (frame, range, doppler, antenna).
+    """
     values = _transformed(coefficients, fft.idctn)
     return np.moveaxis(np.tensordot(beams.conj().astype(coefficients.dtype), values, axes=(0, 0)), 0, 3)
 

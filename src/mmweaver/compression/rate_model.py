@@ -25,7 +25,15 @@ class Estimate:
     all_error: float
 
     def cost(self, step: float, coarser: int) -> float:
-        """Lagrangian cost: distortion, weighted by 1 / coarser² in cells without signal, plus the price of the rate."""
+        """Lagrangian cost of a coding.
+
+        Args:
+            step: Quantisation step.
+            coarser: Step of cells without signal relative to that; their distortion is weighted by 1 / coarser².
+
+        Returns:
+            Weighted distortion plus the price of the rate.
+        """
         weighted = self.active_error + (self.all_error - self.active_error) / max(coarser, 1) ** 2
         return weighted + PRICE * step**2 * 8 * self.num_bytes
 
@@ -52,7 +60,13 @@ class CellSample:
 
     @classmethod
     def of(cls, coefficients: Array, is_active: Array, **front: Any) -> "CellSample":
-        """Samples coefficients (beam, time, range, index): the strongest cells, and a regular choice of the others."""
+        """Samples cells: the strongest, and a regular choice of the others.
+
+        Args:
+            coefficients: Coefficients (beam, time, range, index).
+            is_active: Mask (time, range, index).
+            **front: The remaining fields.
+        """
         flat, active = coefficients.reshape(len(coefficients), -1), is_active.reshape(-1)
         chosen, weight = np.arange(flat.shape[1]), np.ones(flat.shape[1])
         if len(chosen) > NUM_STRONG + NUM_WEAK:
@@ -69,7 +83,12 @@ class CellSample:
         return cls(coefficients=some, is_active=active[chosen], weight=weight, **front)
 
     def rotated(self, matrix: Array, front_bytes: int | float) -> "CellSample":
-        """The same cells after a unitary transform (beam, beam)."""
+        """The same cells after a unitary transform.
+
+        Args:
+            matrix: Transform (beam, beam).
+            front_bytes: Bytes of everything else that is coded with it.
+        """
         some = matrix.astype(self.coefficients.dtype) @ self.coefficients
         return replace(self, coefficients=some, front_bytes=front_bytes, _known={})
 

@@ -336,7 +336,17 @@ def code_static(stream: BitStream, levels: np.ndarray) -> None:
 
 
 def static_of(levels: np.ndarray, window: FitWindow, beams: np.ndarray, step: float) -> torch.Tensor:
-    """The inverse of `static_levels`: static layer (range, antenna), complex64."""
+    """The inverse of `static_levels`.
+
+    Args:
+        levels: Levels (part, beam, 1, range, 1).
+        window: Fit window of the frames.
+        beams: Unitary matrix (beam, antenna).
+        step: Quantisation step of cells.
+
+    Returns:
+        Static layer (range, antenna), complex64.
+    """
     values = (levels[0] + 1j * levels[1])[:, 0, :, 0] * _static_step(window, step)
     return torch.from_numpy(np.einsum("br,ba->ra", values, beams.conj()).astype(np.complex64))
 

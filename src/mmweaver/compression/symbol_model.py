@@ -163,7 +163,16 @@ class SignedModel:
 
 
 def code_far(stream: BitStream, escapes: MixedModel, values: Integers) -> Integers:
-    """Codes integers (n,) of any size: the octave by a model, the place within it and the sign as uniform."""
+    """Codes integers of any size: the octave with a model, position within it and sign as uniform.
+
+    Args:
+        stream: Encoder or decoder.
+        escapes: Model of the octave.
+        values: Integers (n,).
+
+    Returns:
+        The integers.
+    """
     size = np.abs(values) + 1
     bits = (np.frexp(size.astype(np.float64))[1] - 1).astype(np.int64)
     bits = escapes.code(stream, [np.zeros(len(values), np.int64)], np.minimum(bits, MAX_BITS - 1))
@@ -174,7 +183,7 @@ def code_far(stream: BitStream, escapes: MixedModel, values: Integers) -> Intege
 
 
 def prior_of(scale: np.ndarray) -> np.ndarray:
-    """Distribution (context, symbol) of numbers of a magnitude (context,) to expect, not normalised."""
+    """Initial distribution (context, symbol) for numbers of an expected magnitude (context,), not normalised."""
     distance = np.abs(np.arange(SIZE) - HALF)
     relative = 1 + distance / scale[:, None]
     prior = 1.0 / (relative * relative * relative)

@@ -70,7 +70,15 @@ class ActivityNetwork(nn.Module):
         return self.head(self.frames(doppler, angle))
 
     def frames(self, doppler: Tensor, angle: Tensor) -> Tensor:
-        """Features of each frame, (sequence, frame, feature)."""
+        """Features of each frame.
+
+        Args:
+            doppler: Range-Doppler maps (sequence, frame, 1, range, doppler).
+            angle: Range-azimuth maps (sequence, frame, 2, range, azimuth).
+
+        Returns:
+            Features (sequence, frame, feature).
+        """
         shape = doppler.shape[:2]
         speeds = self.doppler(doppler.flatten(0, 1))[-1]
         places = self.angle(angle.flatten(0, 1))[-1]

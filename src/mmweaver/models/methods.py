@@ -94,7 +94,7 @@ class Physics:
     """Ray-traced ADC samples, processed as the radar does. The room is prepared once and kept for the next call."""
 
     def __init__(self, propagation: Propagation = ALL_PATHS) -> None:
-        """Settings of the instance.
+        """Keeps the settings; rooms are prepared on demand.
 
         Args:
             propagation: Which paths are traced.
@@ -169,7 +169,7 @@ class Learned:
     """Renders the network's paths. The room is encoded once and kept for the next call."""
 
     def __init__(self, weights: Path | None = None, propagation: Propagation = ALL_PATHS) -> None:
-        """Settings of the instance.
+        """Keeps the settings; the network is loaded on demand.
 
         Args:
             weights: File of `mmweaver train`; by default the weights that come with mmweaver.

@@ -23,7 +23,12 @@ class PointFrames:
     is_there: Bool[np.ndarray, "frame point"]
 
     def part(self, first: int, num_frames: int) -> "PointFrames":
-        """`num_frames` frames from `first` on."""
+        """Consecutive frames.
+
+        Args:
+            first: First frame.
+            num_frames: Number of frames.
+        """
         own = slice(first, first + num_frames)
         return PointFrames(values=self.values[own], is_there=self.is_there[own])
 
@@ -85,6 +90,11 @@ def middle_m(frames: PointFrames) -> Float[np.ndarray, "3"]:
 
 
 def near(frames: PointFrames, middle: Float[np.ndarray, "3"]) -> PointFrames:
-    """The points that may belong to a person at a position."""
+    """The points that may belong to a person at a position.
+
+    Args:
+        frames: Points of the window.
+        middle: Position (3,) in metres.
+    """
     close = (np.abs(frames.values[..., :3] - middle) <= REACH_M).all(axis=-1)
     return PointFrames(values=frames.values, is_there=frames.is_there & close)

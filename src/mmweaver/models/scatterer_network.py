@@ -138,7 +138,16 @@ class WeaverNetwork(ScattererNetwork):
         return _placed(self.steps(mixed), body, ghosts, prior, ghost_section(joints_m, prior))
 
     def anchors(self, joints_m: Tensor, velocity_mps: Tensor, view: SceneTensors) -> tuple[Anchors, Anchors, BodyPrior]:
-        """Anchors of direct echoes and of ghosts, and the physical prior of the body."""
+        """Anchors and the physical prior of motions.
+
+        Args:
+            joints_m: Joints (room, frame, 22, 3) in metres, in the radar's coordinates.
+            velocity_mps: Velocities of the joints, of the same shape.
+            view: Tensors of the rooms.
+
+        Returns:
+            Anchors of direct echoes, anchors of ghosts, and the prior of the body.
+        """
         body, ghosts = body_anchors(joints_m, velocity_mps, view), ghost_anchors(joints_m, velocity_mps, view)
         return body, ghosts, body_prior(joints_m)
 

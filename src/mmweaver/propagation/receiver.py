@@ -190,12 +190,25 @@ def filtered_noise(rng: np.random.Generator, shape: tuple[int, ...], board: "Boa
 
 
 def quantise(samples: Tensor, count: float) -> None:
-    """Quantises samples as a 16-bit converter does, in place: either part to multiples of `count`, clipped."""
+    """Quantises samples as a 16-bit converter does, in place.
+
+    Args:
+        samples: Complex samples in sqrt(mW).
+        count: Converter count in sqrt(mW); real and imaginary parts become multiples of it, clipped to 16 bits.
+    """
     torch.view_as_real(samples).div_(count).round_().clamp_(-32768, 32767).mul_(count)
 
 
 def leakage(config: RadarConfig, impairments: Impairments) -> complex:
-    """Amplitude of the direct path from transmitter to receiver in sqrt(mW); 0 without leakage."""
+    """Amplitude of the direct path from transmitter to receiver.
+
+    Args:
+        config: The radar, for its transmit power.
+        impairments: The leakage level.
+
+    Returns:
+        Amplitude in sqrt(mW), 0 without leakage.
+    """
     if impairments.leakage_db is None:
         return 0j
     return complex(10 ** ((config.tx_power_dbm + impairments.leakage_db) / 20))

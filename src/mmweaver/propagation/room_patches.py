@@ -64,7 +64,14 @@ class RoomPatches(TensorRecord):
     def edges(
         cls, place_m: np.ndarray, cross_section_m2: np.ndarray, phase: np.ndarray, material: np.ndarray
     ) -> "RoomPatches":
-        """Pieces of edge, with the same arguments as `surfaces`; the cross section holds for all directions."""
+        """Pieces of edge.
+
+        Args:
+            place_m: Centres (patch, 3) in metres.
+            cross_section_m2: Cross sections (patch,) in m2, the same in all directions.
+            phase: Unit phasors (patch,).
+            material: Index (patch,) into the scene's material names.
+        """
         normal = np.zeros_like(place_m)
         return cls(place_m=place_m, normal=normal, cross_section_m2=cross_section_m2, phase=phase, material=material)
 

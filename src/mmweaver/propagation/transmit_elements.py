@@ -67,7 +67,15 @@ class TransmitElements:
         return length_m[:, self._tx] if self.is_coded else length_m
 
     def slots(self, samples: Tensor, axis: int) -> Tensor:
-        """Sums the elements along an axis of samples into slots."""
+        """Sums the elements into slots.
+
+        Args:
+            samples: Values of elements on one axis.
+            axis: That axis.
+
+        Returns:
+            Values of slots on that axis, complex64 for a coded radar.
+        """
         return _summed(self._into_slots, samples, axis) if self.is_coded else samples
 
     def decoded(self, values: Tensor) -> Tensor:

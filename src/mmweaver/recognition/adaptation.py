@@ -1,4 +1,4 @@
-"""Recordings join the training: labelled ones, which grow a share of the trees, and unlabelled ones with a guard.
+"""Adaptation to recordings: labelled ones grow a share of the trees, unlabelled ones join the training under a guard.
 
 Reference: docs/decisions/recogniser-adaptation.md.
 """
@@ -18,17 +18,17 @@ from mmweaver.recognition.scoring import balanced_accuracy
 from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindows
 from mmweaver.recognition.tree_ensemble import Features, TreeEnsemble, joined_trees
 
-MAX_WORTH = 3.0  # recordings of every activity that generated people are worth, where they recognise all of these
-MIN_KNOWN = 0.1  # of the way from chance to all
+MAX_WORTH = 3.0  # equivalent recordings per activity of generated people, if they recognise all labelled windows
+MIN_KNOWN = 0.1  # lower bound of the accuracy above chance
 ASKED_TREES = 100
-OWN_LEAF = 1  # windows; labelled ones are few, and none is wrong
-GUIDED = 5.0  # recordings with which half of the trees on labelled windows look at sampled features
+OWN_LEAF = 1  # windows; labelled ones are few and correct
+GUIDED = 5.0  # number of recordings at which half of the trees on labelled windows use sampled features
 TREES_PER_SAMPLE = 5
 
 CONFIDENT_SHARE = 0.6  # of the windows given to each label, those with the highest votes
-WITH_NEIGHBOURS = 0.8  # the same, where the windows before and after vote along
+WITH_NEIGHBOURS = 0.8  # the same, where votes are averaged with neighbouring windows
 REAL_WEIGHT = 1.0  # of a label's pseudo-labelled windows relative to its others
-MIN_SHARE, MAX_CHANGED = 0.2, 0.35  # the guard: of a label's fair share of windows; of labels that change
+MIN_SHARE, MAX_CHANGED = 0.2, 0.35  # the guard: minimum of a label's fair share of windows; maximum of changed labels
 
 Votes = Float[np.ndarray, "window label"]
 Labels = Int[np.ndarray, " window"]
@@ -36,7 +36,12 @@ Labels = Int[np.ndarray, " window"]
 
 # labelled recordings ------------------------------------------------------------------------------------------------
 def fewest_recordings(windows: Sequence[PointRecording], labels: Sequence[str]) -> int:
-    """Recordings of the activity that has fewest, by the names of their windows."""
+    """Number of recordings of the activity with the fewest.
+
+    Args:
+        windows: Labelled windows; those of the same name belong to one recording.
+        labels: All activities.
+    """
     count = Counter(label for label, _ in {(window.label, window.name) for window in windows})
     return min(count[label] for label in labels)
 
@@ -44,11 +49,21 @@ def fewest_recordings(windows: Sequence[PointRecording], labels: Sequence[str]) 
 def own_trees(
     made: TrainingWindows, features: Features, labels: Labels, fewest: int, options: TrainingOptions
 ) -> tuple[TreeEnsemble | None, TrainingOptions]:
-    """Trees on labelled windows alone, None where an activity has none, and the options of all other trees.
+    """Trees grown on labelled windows alone.
 
-    Their share is fewest / (fewest + worth), `fewest` being the recordings of the activity that has fewest, and `worth`
-    how many recordings what was generated is worth. The fewer, the more of them look at the features that tell
-    generated people's activities apart.
+    Their share is fewest / (fewest + worth), with the number of recordings of the activity that has the fewest, and the
+    number of recordings that generated people are worth. The fewer there are, the more of the trees use the features
+    that discriminate activities of generated people.
+
+    Args:
+        made: Generated windows.
+        features: Features (window, feature) of labelled windows.
+        labels: Labels (window,) of these.
+        fewest: As given by `fewest_recordings`.
+        options: Options of all trees.
+
+    Returns:
+        The trees, None where an activity has no recording, and the options of all other trees.
     """
     if fewest == 0:
         return None, options
@@ -60,7 +75,7 @@ def own_trees(
     trees = alone.trees(replace(own, trees=count - guided)) if guided < count else None
     for first in range(0, guided, TREES_PER_SAMPLE):
         share = replace(own, trees=min(TREES_PER_SAMPLE, guided - first), seed=options.seed + first + 1)
-        # on as many features as there are, sampled by importance, with replacement
+        # as many features as there are, sampled by importance with replacement
         sampled = stream(share.seed, "features drawn").choice(
             len(importance), size=len(importance), p=importance / importance.sum()
         )
@@ -70,14 +85,25 @@ def own_trees(
 
 
 def generated_worth(votes: Votes, labels: Labels) -> float:
-    """How many recordings of every activity generated people are worth, by their votes for labelled windows."""
+    """Number of recordings per activity that generated people are worth, by their accuracy on labelled windows.
+
+    Args:
+        votes: Votes (window, label) of trees grown on generated people.
+        labels: True labels (window,).
+    """
     chance = 1 / votes.shape[1]
     known = (balanced_accuracy(labels, votes.argmax(axis=1)) - chance) / (1 - chance)
     return MAX_WORTH * max(known, MIN_KNOWN)
 
 
 def labelled_alone(made: TrainingWindows, features: Features, labels: Labels) -> TrainingWindows:
-    """Labelled windows as if they were the only ones that train."""
+    """Labelled windows as the only training windows.
+
+    Args:
+        made: Training windows whose settings are kept.
+        features: Features (window, feature) of the labelled windows.
+        labels: Their labels (window,).
+    """
     whole, nobody = np.zeros(len(labels), bool), np.zeros(len(labels), int)
     return replace(made, features=features, label=labels, person=nobody, is_copy=whole, importance=None)
 
@@ -90,11 +116,21 @@ def self_trained(
     options: TrainingOptions,
     follows: Bool[np.ndarray, " window"] | None = None,
 ) -> tuple[TreeEnsemble, dict[str, Any]]:
-    """The trees to use, and what was done: the same trees where the guard refuses.
+    """Self-training on unlabelled windows.
 
-    Confident labels of unlabelled windows (window, feature) join the generated ones. `follows`, as `following` gives
-    it: where people go on with what they do, windows before and after vote along for a label. The guard asks that no
-    label all but vanishes, and that most labels stay as they were.
+    Windows with confident labels join the generated ones. The guard requires that no label nearly vanishes, and that
+    most labels stay as they were.
+
+    Args:
+        made: Generated windows.
+        features: Features (window, feature) of unlabelled windows.
+        trees: Trees grown on the generated windows.
+        options: How trees are grown.
+        follows: As given by `following`, where people continue what they do: votes are then averaged with the windows
+            before and after.
+
+    Returns:
+        The trees to use, unchanged if the guard refuses, and a report.
     """
     votes, share = trees.probabilities(features), CONFIDENT_SHARE
     if follows is not None:
@@ -117,7 +153,7 @@ def self_trained(
 
 
 def following(windows: Sequence[PointRecording]) -> Bool[np.ndarray, " window"]:
-    """Whether a window begins where the one before it in the list ends, in the same recording."""
+    """Mask (window,) of windows that begin where the preceding one in the list ends, in the same recording."""
     found = np.zeros(len(windows), bool)
     found[1:] = [
         one.name == after.name and after.first_frame == one.first_frame + one.num_frames
@@ -127,7 +163,12 @@ def following(windows: Sequence[PointRecording]) -> Bool[np.ndarray, " window"]:
 
 
 def smoothed_votes(votes: Votes, follows: Bool[np.ndarray, " window"]) -> Votes:
-    """The mean vote of each window, the one before it and the one after it, where they follow each other."""
+    """Mean vote of each window and its neighbours in the same recording.
+
+    Args:
+        votes: Votes (window, label).
+        follows: As given by `following`.
+    """
     total, count = votes.copy(), np.ones(len(votes))
     after = np.flatnonzero(follows)
     for here, there in ((after, after - 1), (after - 1, after)):

@@ -1,8 +1,8 @@
-"""Cells with persistent motion that is not the subject: a fan, a curtain. Moving points in them are left out.
+"""Cells with persistent motion that is not the subject, such as a fan or a curtain. Moving points in them are ignored.
 
-They are known from a recording of the empty place or, without labels, from many recordings: where something moves in
-nearly all of them and goes on moving while people walk 1.2 m or more from it. Whoever exercises at one place in all
-recordings moves there as well; so a place counts only where people walk elsewhere in some recordings.
+They are known from a recording of the empty room or, without labels, from many recordings: cells with motion in
+nearly all of them that continues while people walk at least 1.2 m away. A person who exercises at one place in all
+recordings causes motion there, too; therefore a cell counts only if people walk elsewhere in some recordings.
 """
 
 from collections.abc import Sequence
@@ -17,30 +17,31 @@ from mmweaver.recognition.point_recordings import PointRecording, index_runs, is
 from mmweaver.recognition.quantisation import Quantisation, group_neighbours
 
 CELL_M = 0.25
-MIN_FRAMES, MIN_SHARE = 3.0, 0.02  # of the empty place, with motion in a cell: whoever walks through leaves it at once
+MIN_FRAMES, MIN_SHARE = 3.0, 0.02  # frames of the empty room with motion in a cell; a passer-by leaves it at once
 AROUND = np.stack(np.meshgrid([-1, 0, 1], [-1, 0, 1]), axis=-1).reshape(-1, 2)
-FEWEST, WALKERS = 10, 3  # recordings; of these, recordings in which somebody walks elsewhere
-WALKING_SHARE = 0.15  # of the recordings, as well
+FEWEST, WALKERS = 10, 3  # minimum number of recordings, and of recordings in which a person walks elsewhere
+WALKING_SHARE = 0.15  # minimum share of the latter
 NEARLY_ALL, IN_FRAMES = 0.9, 0.05  # of the recordings; of a recording's frames
-APART_M, WALKED_M = 1.2, 1.0  # of whoever walks: from the place, and in range (from the 10th to the 90th percentile)
-STRETCH_S, GOES_ON, MOSTLY = 0.5, 0.5, 0.8  # shares of the stretches in which somebody walks, and of such recordings
+APART_M, WALKED_M = 1.2, 1.0  # of a walker: distance from the cell, and extent in range (10th to 90th percentile)
+STRETCH_S, GOES_ON, MOSTLY = 0.5, 0.5, 0.8  # length and share of the intervals with a walker; share of recordings
 
 Cells = Int[np.ndarray, "_ 2"]  # right, ahead, in steps of CELL_M
 NO_CELLS: Cells = np.zeros((0, 2), int)
 
 
 def background_cells(empty_place: Sequence[PointRecording]) -> Cells:
-    """Cells in which and next to which something moves in recordings of the empty place."""
+    """Cells with motion in recordings of the empty room, and their neighbours."""
     found = [_moving_cells(one, max(MIN_FRAMES, MIN_SHARE * one.num_frames)) for one in empty_place]
     return _dilated(np.concatenate([NO_CELLS, *found]))
 
 
 def persistent_motion_cells(recordings: Sequence[PointRecording], radar: Quantisation | None = None) -> Cells:
-    """Cells, and those around, with persistent motion that is certainly not the subject; none if unsure.
+    """Cells with persistent motion that is certainly not the subject, and their neighbours; none if unsure.
 
     Args:
-        recordings: Ten or more, in some of which somebody walks; labels are not used.
-        radar: How neighbours are grouped: flanks of static echoes move, if these are not. None: as they are.
+        recordings: Ten or more, in some of which a person walks; labels are not used.
+        radar: How the radar groups neighbours: flanks of static echoes move unless they are grouped. By default
+            recordings are used as they are.
 
     Returns:
         Cells (cell, 2), right and ahead in steps of CELL_M.
@@ -52,20 +53,25 @@ def persistent_motion_cells(recordings: Sequence[PointRecording], radar: Quantis
     found = [_moving_cells(one, max(IN_FRAMES * one.num_frames, 1.0)) for one in recordings]
     cells, count = np.unique(np.concatenate(found), axis=0, return_counts=True)
     cells = cells[count >= NEARLY_ALL * len(recordings)]
-    goes_on = np.array([_goes_on(recording, cells) for recording in recordings])  # nan: no walker
+    goes_on = np.array([_goes_on(recording, cells) for recording in recordings])  # nan without a walker
     walks = np.isfinite(goes_on).sum(axis=0)
     often = (np.nan_to_num(goes_on) >= GOES_ON).sum(axis=0) >= MOSTLY * np.maximum(walks, 1)
     return _dilated(cells[(walks >= max(WALKERS, WALKING_SHARE * len(recordings))) & often])
 
 
 def remove_motion(window: PointRecording, cells: Cells) -> PointRecording:
-    """The window without the moving points in these cells."""
+    """The window without moving points in some cells.
+
+    Args:
+        window: Points of one window.
+        cells: Cells (cell, 2) in steps of CELL_M.
+    """
     hidden = is_moving(window.cloud) & _inside(_cells_of(window.cloud), cells)
     return replace(window, cloud=window.cloud.select(~hidden)) if hidden.any() else window
 
 
 def left_out_lines(cells: Cells) -> list[str]:
-    """One line about each place that cells which touch make up."""
+    """One line of text about each group of adjacent cells."""
     if not len(cells):
         return []
     first = cells.min(axis=0)
@@ -95,7 +101,7 @@ def _inside(cell: Int[np.ndarray, "point 2"], places: Cells) -> Bool[np.ndarray,
 
 
 def _moving_cells(recording: PointRecording, min_frames: float) -> Cells:
-    """Cells in which something moves in at least so many frames."""
+    """Cells with motion in at least `min_frames` frames."""
     cloud = recording.cloud.select(is_moving(recording.cloud))
     visits = np.unique(np.column_stack([cloud.frame, _cells_of(cloud)]), axis=0)
     cells, frames = np.unique(visits[:, 1:], axis=0, return_counts=True)
@@ -103,7 +109,7 @@ def _moving_cells(recording: PointRecording, min_frames: float) -> Cells:
 
 
 def _goes_on(recording: PointRecording, candidates: Cells) -> np.ndarray:
-    """For each cell the share of the stretches with somebody who walks elsewhere in which it moves; nan: no walker."""
+    """For each cell the share of the intervals with a walker elsewhere in which it moves; nan without a walker."""
     cloud = recording.cloud.select(is_moving(recording.cloud))
     stretch, cell = cloud.frame // max(round(STRETCH_S * recording.frame_rate_hz), 1), _cells_of(cloud)
     point_m = np.stack([cloud.x_m, cloud.y_m], axis=1)
@@ -118,24 +124,24 @@ def _goes_on(recording: PointRecording, candidates: Cells) -> np.ndarray:
 
 
 AT_ONCE_S = 0.15
-MULTIPATH_GROUP_M = 0.8  # from a point, within which others are of the same group
-MULTIPATH_APART_M, MULTIPATH_BEHIND_M = 1.0, 0.6  # least distance and difference in range between a person and an echo
-MIN_NEARER, NEARER_SHARE = 2, 0.5  # of points of the nearer group, in all and relative to those of the farther
+MULTIPATH_GROUP_M = 0.8  # distance within which points belong to the same group
+MULTIPATH_APART_M, MULTIPATH_BEHIND_M = 1.0, 0.6  # minimum distance and range difference of person and multipath
+MIN_NEARER, NEARER_SHARE = 2, 0.5  # points of the nearer group: minimum number, and share of the farther group
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class WindowFilter:
-    """What is left out of all windows, generated and recorded, before anything is measured of them."""
+    """Points that are removed from all windows, generated and recorded, before features are computed."""
 
-    busy: Cells = field(default_factory=NO_CELLS.copy)  # moving points in these cells are left out
-    radar: Quantisation | None = None  # of the task; None: a model of before 0.3, which saw neighbours and echoes
+    busy: Cells = field(default_factory=NO_CELLS.copy)  # moving points in these cells are removed
+    radar: Quantisation | None = None  # of the task; None for models before 0.3, which kept neighbours and multipath
 
     def masking(self, cells: Cells) -> "WindowFilter":
-        """Moving points in these cells do not count either."""
+        """The filter that also removes moving points in further cells."""
         return replace(self, busy=np.unique(np.concatenate([self.busy, cells]), axis=0)) if len(cells) else self
 
     def __call__(self, window: PointRecording) -> PointRecording:
-        """The window without what does not count."""
+        """The window without the removed points."""
         window = remove_motion(window, self.busy)
         return window if self.radar is None else remove_multipath(group_neighbours(window, self.radar))
 
@@ -144,7 +150,10 @@ def remove_multipath(window: PointRecording) -> PointRecording:
     """The window without moving points behind a nearer group that moves at the same time.
 
     Multipath of a person over a wall or another body is always longer than the direct path, so of two groups that move
-    at once the nearer is the person.
+    at the same time the nearer one is the person.
+
+    Args:
+        window: Points of one window.
     """
     cloud = window.cloud
     moving = np.flatnonzero(is_moving(cloud))

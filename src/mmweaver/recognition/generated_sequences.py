@@ -1,6 +1,6 @@
 """Generated recordings of a task: people of a population perform its sentences in front of its radar.
 
-Sequences are kept in a folder as they are made, so an interrupted run resumes with the same bits.
+Sequences are stored in a folder as they are made, so an interrupted run resumes with the same bits.
 """
 
 import json
@@ -34,7 +34,7 @@ from mmweaver.recognition.task_file import RecognitionTask, RecordingSettings
 
 WINDOWS_PER_SEQUENCE, SHORTEST_S, LONGEST_S = 2, 4.0, 20.0
 TRIES, UNSEEN_TRIES = 12, 2
-REACH_M, SEEN_SHARE = 0.6, 0.3  # of the body about the pelvis; of frames in which it is detected
+REACH_M, SEEN_SHARE = 0.6, 0.3  # of the body around the pelvis; share of frames in which it must be detected
 SKIN_POINTS = 1000
 VERSION = 8  # of how sequences are made; part of what a folder of them must agree in
 COLUMNS = ("x_m", "y_m", "z_m", "radial_velocity_mps", "snr_db")
@@ -42,7 +42,7 @@ COLUMNS = ("x_m", "y_m", "z_m", "radial_velocity_mps", "snr_db")
 
 @dataclass(frozen=True, kw_only=True)
 class SequenceRecipe:
-    """Everything that determines generated sequences of a task, but their number."""
+    """Everything that determines generated sequences of a task, except their number."""
 
     task: RecognitionTask
     prior: PerformancePrior
@@ -51,7 +51,13 @@ class SequenceRecipe:
 
     @staticmethod
     def of(task: RecognitionTask, prior: PerformancePrior | None = None, seed: int = 0) -> "SequenceRecipe":
-        """The recipe that follows from a task."""
+        """The recipe of a task.
+
+        Args:
+            task: The task.
+            prior: How people and performances differ; by default `PerformancePrior()`.
+            seed: Seed of everything that is sampled.
+        """
         return SequenceRecipe(
             task=task, prior=prior or PerformancePrior(), variation=task_variation(task.mount), seed=seed
         )
@@ -63,11 +69,11 @@ class SequenceRecipe:
 
     @property
     def seconds(self) -> float:
-        """How long a sequence of something that goes on lasts."""
+        """Duration of a sequence of a continuing activity in seconds."""
         return float(np.clip(WINDOWS_PER_SEQUENCE * self.task.recordings.window_s, SHORTEST_S, LONGEST_S))
 
     def as_json(self) -> str:
-        """All that decides the bits of a sequence; equal recipes give equal text."""
+        """Everything that determines the bits of a sequence; equal recipes give equal text."""
         task = self.task
         values: dict[str, Any] = {
             "version": VERSION,
@@ -86,7 +92,16 @@ class SequenceRecipe:
 
 
 def generate_sequence(recipe: SequenceRecipe, label: str, index: int) -> PointRecording:
-    """The index-th person performing an activity. Raises InputError where its sentences cannot be carried out."""
+    """The recording of the index-th person performing an activity.
+
+    Args:
+        recipe: The recipe.
+        label: The activity.
+        index: Number of the person.
+
+    Raises:
+        InputError: If its sentences cannot be carried out.
+    """
     rng = stream(recipe.seed, "performance", label, index)
     sentences = recipe.task.activities[label]
     unseen: list[PointRecording] = []
@@ -114,7 +129,7 @@ def generate_sequence(recipe: SequenceRecipe, label: str, index: int) -> PointRe
 def _sequence(
     recipe: SequenceRecipe, who: Performer, sentence: str, label: str, index: int, rng: np.random.Generator
 ) -> tuple[PointRecording, bool]:
-    """A sequence, and whether the body is detected often enough: else the radar would be placed elsewhere."""
+    """A sequence, and whether the body is detected often enough; otherwise a real radar would be placed elsewhere."""
     once, rate_hz = recipe.task.recordings.has_single_performances, recipe.task.recordings.frame_rate_hz
     did = perform(who, recipe.prior, sentence, seconds=recipe.seconds, once=once, rng=rng)
     frames, pose = max(int(did.lasts_s * rate_hz), 1), did.pose
@@ -144,7 +159,15 @@ def _recording(
 
 
 def joints_at(pose: PoseSequence, time_s: np.ndarray) -> np.ndarray:
-    """Joints (time, 22, 3) of a motion at these times."""
+    """Joints of a motion, linearly interpolated.
+
+    Args:
+        pose: The motion.
+        time_s: Times (time,) in seconds.
+
+    Returns:
+        Joints (time, 22, 3) in metres.
+    """
     before = np.searchsorted(pose.time_s, time_s).clip(1, len(pose.time_s) - 1)
     early_s, late_s = pose.time_s[before - 1], pose.time_s[before]
     share = ((time_s - early_s) / (late_s - early_s)).clip(0, 1)[:, None, None]
@@ -159,14 +182,14 @@ def generate_sequences(
     Args:
         recipe: The task, with everything else that determines the sequences.
         each: Number of people who perform every activity.
-        folder: Sequences that it holds are read, new ones are stored there.
-        listener: Called with the number of finished sequences and of all.
+        folder: Folder from which sequences are read and where new ones are stored.
+        listener: Called with the number of finished sequences and the total.
 
     Returns:
         Recordings, person by person.
 
     Raises:
-        InputError: For a folder of another recipe, and for sentences that cannot be carried out.
+        InputError: If the folder belongs to another recipe, or sentences cannot be carried out.
     """
     if folder is not None and create_once(folder / "recipe.json", recipe.as_json()) != recipe.as_json():
         raise InputError(f"{folder} holds sequences of another task or seed; choose another folder or remove it")

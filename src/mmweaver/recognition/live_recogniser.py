@@ -1,4 +1,4 @@
-"""Labels of frames as they come: from a pipe, a serial port, or a signal that is being generated."""
+"""Live recognition of frames from a pipe, a serial port, or a signal that is being generated."""
 
 import csv
 from collections import deque
@@ -18,11 +18,11 @@ from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.recogniser import Recogniser, Recognition
 
 FramePoints = Float[np.ndarray, "point 5"]  # x right, y ahead, z up in m, radial velocity (away +) in m/s, SNR in dB
-MAX_EMPTY = 100_000  # frames that may be missing between two
+MAX_EMPTY = 100_000  # maximum number of missing frames between two
 
 
 class LiveRecogniser:
-    """Takes one frame after the other and gives the windows that are complete, those of `Recogniser.recognise`."""
+    """Takes frames one by one and returns complete windows, the same as those of `Recogniser.recognise`."""
 
     def __init__(self, model: Recogniser):
         self.model = model
@@ -30,11 +30,18 @@ class LiveRecogniser:
         self._start: int | None = 0 if model.settings.gap_frames is None else None  # of the sample
         self._last = -1  # frame with points
         self._given = 0  # windows of the sample
-        self._silent = 0  # first frame of the gap that no window has yet, where there is no sample
+        self._silent = 0  # first frame of the gap that is not yet part of a window
         self._points: deque[tuple[int, FramePoints]] = deque()
 
     def push(self, points: FramePoints) -> list[Recognition]:
-        """One more frame, (point, 5), perhaps without points; the windows that it completes."""
+        """Takes one more frame.
+
+        Args:
+            points: Points (point, 5) of the frame, possibly none.
+
+        Returns:
+            The windows that are now complete.
+        """
         now, gap = self._frame, self.model.settings.gap_frames
         self._frame += 1
         if len(points):
@@ -46,7 +53,7 @@ class LiveRecogniser:
         return self._complete(now + 1 if gap is None else self._last + 1)
 
     def finish(self) -> list[Recognition]:
-        """Ends the sample: a single performance that is shorter than a window is one, too."""
+        """Ends the sample and returns the remaining windows, including a single performance shorter than a window."""
         return [*self._end_sample(), *self._silence()]
 
     def _end_sample(self) -> list[Recognition]:
@@ -60,7 +67,7 @@ class LiveRecogniser:
         return found
 
     def _silence(self) -> list[Recognition]:
-        """Windows of a gap, where one of the labels is an empty place."""
+        """Windows of a gap, if one of the labels is the empty room."""
         settings, found = self.model.settings, list[Recognition]()
         if settings.gap_frames is not None and settings.empty_label is not None:
             while self._frame - self._silent >= settings.window_frames:
@@ -76,7 +83,7 @@ class LiveRecogniser:
         return found
 
     def _window(self, first: int) -> Recognition:
-        """Labels the window that begins at a frame, and forgets its points."""
+        """Labels the window that begins at a frame, and drops its points."""
         settings = self.model.settings
         end, rows = first + settings.window_frames, [np.zeros((0, 6))]
         while self._points and self._points[0][0] < end:
@@ -96,9 +103,17 @@ class LiveRecogniser:
 
 
 def recognise_stream(model: Recogniser, source: ByteSource) -> Iterator[Recognition]:
-    """Labels of what comes through a pipe: bytes of a TI demo's data port, or CSV lines with a header.
+    """Labels windows from a pipe: bytes of a TI demo's data port, or CSV lines with a header.
 
-    Raises InputError where it is neither.
+    Args:
+        model: The recogniser.
+        source: The bytes.
+
+    Yields:
+        Windows as they become complete.
+
+    Raises:
+        InputError: If the bytes are neither.
     """
     live = LiveRecogniser(model)
     for points in frames_of(source):
@@ -107,7 +122,14 @@ def recognise_stream(model: Recogniser, source: ByteSource) -> Iterator[Recognit
 
 
 def frames_of(source: ByteSource) -> Iterator[FramePoints]:
-    """The points of each frame of a stream, also of frames without any. Raises InputError."""
+    """The points (point, 5) of each frame of a stream, including empty frames.
+
+    Args:
+        source: Bytes as for `recognise_stream`.
+
+    Raises:
+        InputError: If the bytes are not points.
+    """
     head = source.read(len(MAGIC))
     if head.isascii() and head[:1].isalpha():
         rest = TextIOWrapper(cast("Any", source), encoding="utf-8", errors="replace")
@@ -117,7 +139,7 @@ def frames_of(source: ByteSource) -> Iterator[FramePoints]:
 
 
 def _frames_of_csv(lines: Iterator[str]) -> Iterator[FramePoints]:
-    """Frame, X, Y, Z, Doppler, perhaps SNR; frames that are missing are empty."""
+    """Frame, X, Y, Z, Doppler, optionally SNR; missing frames are empty."""
     rows = csv.reader(lines)
     at = csv_columns(next(rows, []), "the stream")
     order = [at[name] for name in ("frame", "x", "y", "z", "velocity")]

@@ -1,6 +1,6 @@
-"""Recordings of a point-cloud radar, generated or real: reading them, samples between gaps, windows.
+"""Recordings of a point-cloud radar, generated or real: reading, samples between gaps, windows.
 
-A task's recordings lie in folders named by label, as .npz, .dat or whatever `read_points` reads.
+The recordings of a task are in folders named by label, as .npz, .dat or any format that `read_points` reads.
 """
 
 import re
@@ -23,34 +23,44 @@ POINTS_FILE, SIGNAL_FILE = "points.npz", "radar.npz"  # of a result folder of mm
 SAME_RATE = 0.02
 MAX_FRAMES = 10_000_000
 BREAK_FRAMES = 100  # between the takes of one file
-STILL_MPS = 0.1  # up to this radial speed a point counts as at rest
+STILL_MPS = 0.1  # maximum radial speed of a static point
 
 
 def is_moving(cloud: PointCloud) -> Bool[np.ndarray, " point"]:
-    """Which points move, by their radial velocity."""
+    """Mask (point,) of the moving points, by radial velocity."""
     return np.abs(cloud.radial_velocity_mps) > STILL_MPS
 
 
 @dataclass(frozen=True, kw_only=True)
 class PointRecording:
-    """Points of frames 0 to num_frames - 1 (empty frames included) at a constant frame rate."""
+    """Points of frames 0 to num_frames - 1 (including empty frames) at a constant frame rate."""
 
     name: str
     cloud: PointCloud
     num_frames: int
     frame_rate_hz: float
     label: str = ""  # the activity, if known
-    first_frame: int = 0  # in the recording that this is a part of
+    first_frame: int = 0  # within the recording that this is a part of
     joints_m: Float[np.ndarray, "frame 22 3"] | None = None  # of one person in the radar's level axes, if known
 
     def windows(self, seconds: float, step_s: float | None = None) -> "list[PointRecording]":
-        """Windows of this length, consecutive or every `step_s`; an incomplete last window is dropped."""
+        """Windows of equal length; an incomplete last window is dropped.
+
+        Args:
+            seconds: Length of a window.
+            step_s: Time from one window to the next; by default they are consecutive.
+        """
         length = max(round(seconds * self.frame_rate_hz), 1)
         step = max(round((step_s or seconds) * self.frame_rate_hz), 1)
         return [self.part(first, length) for first in range(0, self.num_frames - length + 1, step)]
 
     def part(self, first: int, num_frames: int) -> "PointRecording":
-        """`num_frames` frames starting at `first`, renumbered from 0."""
+        """Consecutive frames, renumbered from 0.
+
+        Args:
+            first: First frame.
+            num_frames: Number of frames.
+        """
         inside = (self.cloud.frame >= first) & (self.cloud.frame < first + num_frames)
         cloud = self.cloud.select(inside)
         return replace(
@@ -72,14 +82,14 @@ def read_task_recordings(
 
     Args:
         place: A folder, or one file.
-        settings: How a task's recordings are read.
-        labelled: Whether each must name its activity; else labels are empty.
+        settings: How the recordings of the task are read.
+        labelled: Whether each must name its activity; otherwise labels are empty.
 
     Returns:
-        The recordings; frames without points count.
+        The recordings, including frames without points.
 
     Raises:
-        InputError: Where there are none, one names no activity or several, or cannot be read.
+        InputError: If there are none, or one names no activity or several, or cannot be read.
     """
     place = Path(place)
     check_exists(place, "a folder of recordings")
@@ -96,7 +106,16 @@ def read_task_recordings(
 
 
 def read_task_recording(file: Path, settings: RecordingSettings, label: str = "") -> PointRecording:
-    """One recording; frames without points count. Raises InputError for a file that cannot be read."""
+    """One recording, including frames without points.
+
+    Args:
+        file: The file, or a result folder.
+        settings: How the recordings of the task are read.
+        label: The activity, if known.
+
+    Raises:
+        InputError: If the file cannot be read.
+    """
     if file.is_dir() and (file / POINTS_FILE).is_file():
         file = file / POINTS_FILE
     cloud, frames = _read_cloud(file, settings)
@@ -106,7 +125,7 @@ def read_task_recording(file: Path, settings: RecordingSettings, label: str = ""
 
 
 def _label_of(file: Path, folder: Path, labels: tuple[str, ...]) -> str:
-    """The activity that a path below `folder` names. Raises InputError where it names none or several."""
+    """The activity that a path below `folder` names; InputError if it names none or several."""
     by_folder = [name for name in labels if name in file.relative_to(folder).parts[:-1]]
     words = re.split(r"[^a-z]+", file.stem.lower())
     found = by_folder or [name for name in labels if name == file.stem or name.lower() in words]
@@ -116,12 +135,12 @@ def _label_of(file: Path, folder: Path, labels: tuple[str, ...]) -> str:
 
 
 def _belongs_to_points_file(file: Path) -> bool:
-    """Whether a file is another one of a result folder that has points."""
+    """Whether a file is another file of a result folder that has points."""
     return file.name in (SIGNAL_FILE, "pose.npz") and (file.parent / POINTS_FILE).is_file()
 
 
 def _read_cloud(file: Path, settings: RecordingSettings) -> tuple[PointCloud, int]:
-    """Points and number of frames, 0 where nothing says it."""
+    """Points and number of frames, 0 if unknown."""
     if file.is_dir() and not any(file.glob("*.bin")):
         raise InputError(
             f"{file} holds no {POINTS_FILE}; give a result folder of mmweaver generate, or one recording"
@@ -129,7 +148,7 @@ def _read_cloud(file: Path, settings: RecordingSettings) -> tuple[PointCloud, in
         )
     if file.suffix.lower() == ".npz" and settings.columns is not None:
         held = read_npz(file, only=("frame", "pts", "num_frames", "x_m"))
-        if "pts" in held or "x_m" not in held:  # else it names its columns itself, as `mmweaver points` writes them
+        if "pts" in held or "x_m" not in held:  # otherwise its columns are named, as in files of `mmweaver points`
             return _from_columns(held, file, settings.columns)
     if file.suffix.lower() == ".dat":
         log = read_ti_uart(file)
@@ -139,9 +158,10 @@ def _read_cloud(file: Path, settings: RecordingSettings) -> tuple[PointCloud, in
 
 
 def _frames_of_signal(file: Path, settings: RecordingSettings) -> int:
-    """The number of frames of the signal in the same result folder; 0 where there is none.
+    """The number of frames of the signal in the same result folder; 0 if there is none.
 
-    Raises InputError where it has another frame rate than the recogniser's recordings.
+    Raises:
+        InputError: If its frame rate is not that of the recogniser's recordings.
     """
     signal = file.with_name(SIGNAL_FILE)
     if file.name != POINTS_FILE or not signal.is_file():
@@ -164,7 +184,7 @@ def _from_columns(held: NpzArrays, file: Path, columns: RecordedColumns) -> tupl
     """`frame` (point,) and `pts` (point, column), perhaps `num_frames`; frames count from the first with points."""
     frame = held.numbers("frame", ("point",), low=0, high=2**31).astype(int)
     pts = held.numbers("pts", ("point", "column"), low=-1e9, high=1e9).astype(float)
-    # where a log begins to count again, another take follows after a break
+    # where frame numbers restart, another take follows after a break
     before = np.concatenate([frame[:1], frame[:-1]])
     frame = frame + np.cumsum(np.where(frame < before, before - frame + BREAK_FRAMES, 0))
     if "num_frames" in held:  # then frames count from 0
@@ -178,7 +198,12 @@ def _from_columns(held: NpzArrays, file: Path, columns: RecordedColumns) -> tupl
 
 # samples and windows ------------------------------------------------------------------------------------------------
 def samples_of(recording: PointRecording, gap_frames: int | None) -> list[PointRecording]:
-    """The parts of a recording between gaps: more than `gap_frames` frames without points. None: never cut."""
+    """Splits a recording at gaps.
+
+    Args:
+        recording: The recording.
+        gap_frames: Frames without points above which a gap ends a sample; None never splits.
+    """
     if gap_frames is None:
         return [recording]
     occupied = np.unique(recording.cloud.frame)
@@ -191,16 +216,16 @@ def samples_of(recording: PointRecording, gap_frames: int | None) -> list[PointR
 def windows_of(
     recording: PointRecording, settings: RecordingSettings, step_s: float | None = None
 ) -> list[PointRecording]:
-    """Consecutive windows of each sample; one that is shorter than a window is a window with empty frames at its end.
+    """Consecutive windows of each sample; a single performance shorter than a window is padded with empty frames.
 
-    Where recordings are never cut, what is left over at the end is dropped. Where one of the labels is an empty place,
-    gaps are samples of it, but for those of recordings of other labels; else a recording without any point is one
+    Where recordings are never split, the remainder at the end is dropped. If one of the labels is the empty room,
+    gaps are samples of it, except in recordings of other labels; otherwise a recording without points is one
     sample, unless samples are single performances.
 
     Args:
         recording: Frames of one recording.
-        settings: Length of a window, and when a gap ends a sample.
-        step_s: A window begins every so many seconds; None: where the one before it ends.
+        settings: Window length, and when a gap ends a sample.
+        step_s: Time from one window to the next; by default they are consecutive.
 
     Returns:
         Windows in the order of their first frames.
@@ -221,7 +246,7 @@ def windows_of(
 
 
 def _silences(recording: PointRecording, samples: list[PointRecording]) -> list[PointRecording]:
-    """What lies between samples, before the first and after the last, without points."""
+    """The gaps between samples, before the first and after the last."""
     firsts = [one.first_frame - recording.first_frame for one in samples]
     begins = [0, *(first + one.num_frames for first, one in zip(firsts, samples, strict=True))]
     ends = [*firsts, recording.num_frames]
@@ -231,7 +256,15 @@ def _silences(recording: PointRecording, samples: list[PointRecording]) -> list[
 def index_runs(
     begin: Int[np.ndarray, " run"], end: Int[np.ndarray, " run"]
 ) -> tuple[Int[np.ndarray, " index"], Int[np.ndarray, " index"]]:
-    """All indices from `begin` to `end` - 1 of each run, one run after the other, with the number of their run."""
+    """Concatenated index ranges.
+
+    Args:
+        begin: First index (run,) of each range.
+        end: Index (run,) after the last.
+
+    Returns:
+        Number of the range (index,), and the index (index,).
+    """
     count = end - begin
     run = np.repeat(np.arange(len(count)), count)
     return run, np.arange(len(run)) - np.repeat(np.cumsum(count) - count - begin, count)

@@ -1,4 +1,4 @@
-"""Poses from point clouds: weights of `mmweaver train pose` applied to recordings.
+"""Poses from point clouds, by weights of `mmweaver train pose`.
 
 estimator = load_estimator("model/")
 pose = estimator.estimate(cloud, num_frames)  # a PoseSequence, one pose per frame
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from mmweaver.models.pose_network import PoseNetwork
 
 STEPS_PER_WINDOW = 8  # windows overlap by seven eighths, and their poses are averaged
-EVENED_S = 0.1  # standard deviation of the Gaussian that joints are smoothed with over time
+EVENED_S = 0.1  # standard deviation of the Gaussian that smooths joints over time
 AT_ONCE = 64
 CROWN_OVER_HEAD_M = 0.11
 ALL_WEIGHTS = "weights*.safetensors"
@@ -38,9 +38,17 @@ class PoseEstimator:
     settings: RecordingSettings
 
     def estimate(self, cloud: PointCloud, num_frames: int) -> PoseSequence:
-        """Poses of frames 0 to num_frames - 1 of a cloud, recorded or generated, in the radar's level axes.
+        """Poses of all frames of a point cloud.
 
-        Raises InputError for fewer frames than a window has, and where none has a point.
+        Args:
+            cloud: Points, recorded or generated.
+            num_frames: Number of frames, from 0.
+
+        Returns:
+            One person's joints in the radar's level axes, one pose per frame.
+
+        Raises:
+            InputError: For fewer frames than a window, or a cloud without points.
         """
         if not len(cloud.frame):
             raise InputError("no frame has a point, so there is nobody to give poses of")
@@ -52,11 +60,21 @@ class PoseEstimator:
 
     @property
     def mean_pose_m(self) -> Float[np.ndarray, "22 3"]:
-        """The mean pose of the people that the networks were trained on, relative to the pelvis."""
+        """Mean pose (22, 3) of the training data relative to the pelvis, in metres."""
         return np.mean([network.mean_m.numpy() for network in self.networks], axis=0)
 
     def joints_m(self, frames: PointFrames) -> Float[np.ndarray, "frame 22 3"]:
-        """Joints of every frame: the weighted mean over the windows that hold it, those in its middle first, evened."""
+        """Joints of every frame, averaged over overlapping windows with a Hann weight and smoothed over time.
+
+        Args:
+            frames: Points of all frames.
+
+        Returns:
+            Joints (frame, 22, 3) in metres.
+
+        Raises:
+            InputError: For fewer frames than a window.
+        """
         from scipy.ndimage import gaussian_filter1d
 
         length, num_frames = self.settings.window_frames, len(frames.values)
@@ -81,7 +99,7 @@ class PoseEstimator:
 
         nothing = np.zeros((self.settings.window_frames, NUM_JOINTS, 3))
         found = []
-        # in a mirror people have the mirrored pose, backwards in time the same one: the mean of all is better
+        # test-time augmentation: mirrored windows give mirrored poses, reversed ones the same; the mean is better
         for side, time in itertools.product((-1, 1), (-1, 1)):
             seen = [
                 PointFrames(
@@ -100,9 +118,13 @@ class PoseEstimator:
 
 
 def load_estimator(place: Path | str) -> PoseEstimator:
-    """Reads a weights file of recipe `pose`, or all networks in the folder of `mmweaver train pose`.
+    """Loads a weight file of recipe `pose`, or all networks in a folder of `mmweaver train pose`.
 
-    Raises InputError.
+    Args:
+        place: File or folder.
+
+    Raises:
+        InputError: If there are no weights, or they are for different recordings.
     """
     from mmweaver.models.pose_network import load_pose
 

@@ -1,7 +1,7 @@
-"""How the task's firmware quantises points: steps of range and velocity, static removal, grouping of neighbours.
+"""Quantisation of points by the task's firmware: steps of range and velocity, static removal, grouping of neighbours.
 
-Neighbours are grouped as the firmware groups them, also where a recording's did not: of cells that touch, the strongest
-stays, so that one echo is about as many points whether or not the board grouped them.
+Neighbours are grouped as the firmware does, even if a recording was not grouped: of adjacent cells the strongest
+is kept, so that one echo gives about as many points whether or not the board grouped them.
 """
 
 from dataclasses import dataclass, replace
@@ -13,25 +13,25 @@ from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.task_file import RecognitionTask
 from mmweaver.signal.firmware import range_step_m
 
-SLOWER = 0.05  # of two that are equal, what is at rest is the echo and what moves a step is its flank
-AROUND = 2  # cells on either side that tell the middle of an echo
+SLOWER = 0.05  # tie-break: of two equal cells the slower one is the echo, the other its flank
+AROUND = 2  # cells on either side that determine the middle of an echo
 
 
 @dataclass(frozen=True, kw_only=True)
 class Quantisation:
-    """What a task says of its radar, as far as points show it."""
+    """Properties of a task's radar that are visible in its points."""
 
     range_step_m: float
     velocity_step_mps: float
     max_velocity_mps: float
     removes_static: bool
-    groups_range: bool  # of neighbours in range or in velocity one is reported
+    groups_range: bool  # whether one of several neighbours in range, or in velocity, is reported
     groups_velocity: bool
-    knows_place: bool  # whether there is a recording of the empty place
+    knows_place: bool  # whether there is a recording of the empty room
 
     @staticmethod
     def of(task: RecognitionTask) -> "Quantisation":
-        """That of a task's radar and firmware."""
+        """Properties of a task's radar and firmware."""
         return Quantisation(
             range_step_m=range_step_m(task.radar),
             velocity_step_mps=task.radar.velocity_resolution_mps,
@@ -44,7 +44,7 @@ class Quantisation:
 
     @staticmethod
     def read(values: object) -> "Quantisation | None":
-        """That of meta.json; None where it holds none, as models of before 0.3."""
+        """Properties stored in meta.json; None where there are none, as in models before 0.3."""
         try:
             found = Quantisation(**values) if isinstance(values, dict) else None
             known = found and 0 < found.velocity_step_mps <= found.max_velocity_mps < np.inf
@@ -54,9 +54,13 @@ class Quantisation:
 
 
 def group_neighbours(window: PointRecording, radar: Quantisation) -> PointRecording:
-    """Keeps one cell of those that touch, in the directions in which the task's firmware groups.
+    """Keeps the strongest of adjacent cells, in the directions in which the task's firmware groups.
 
-    Velocities are cyclic. What firmware has grouped already has no neighbours, so nothing of it changes.
+    Velocities are cyclic. Points that have been grouped already have no neighbours and are unchanged.
+
+    Args:
+        window: Points of one window.
+        radar: Steps of range and velocity, and grouping.
     """
     cloud = window.cloud
     if not len(cloud.frame) or not (radar.groups_range or radar.groups_velocity):
@@ -93,7 +97,7 @@ def group_neighbours(window: PointRecording, radar: Quantisation) -> PointRecord
 
     snr_db = np.full(len(own), -np.inf)
     np.maximum.at(snr_db, cell.ravel(), np.nan_to_num(cloud.snr_db, nan=-np.inf))
-    # a ratio to the noise of each velocity is the same on the flanks of an echo, so that its middle is the peak
+    # SNR relative to each velocity's own noise is equal on the flanks of an echo, so its middle is taken as the peak
     is_known = bool(np.isfinite(snr_db).all())
     strength = sum_around(np.maximum(snr_db, 0.0), 0) if is_known else sum_around(np.ones(len(own)), AROUND)
     strength *= 1 - SLOWER * np.minimum(np.minimum(column, columns - column), AROUND)
@@ -102,5 +106,5 @@ def group_neighbours(window: PointRecording, radar: Quantisation) -> PointRecord
         for steps in (-1, 0, 1) if radar.groups_velocity else (0,):
             other = neighbour(rows, steps)
             there = np.where(other >= 0, strength[other], -np.inf)
-            kept &= (there < strength) | ((there == strength) & (other >= here))  # of equal ones the first
+            kept &= (there < strength) | ((there == strength) & (other >= here))  # ties: the first
     return window if kept.all() else replace(window, cloud=cloud.select(kept[cell.ravel()]))

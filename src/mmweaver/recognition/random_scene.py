@@ -1,4 +1,4 @@
-"""Random scenes for recordings: people, open rooms and radars, sampled anew for each (domain randomisation)."""
+"""Random scenes for recordings: people, open rooms and radars, sampled for each one (domain randomisation)."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -9,7 +9,7 @@ from mmweaver.core.records import CameraIntrinsics, FreeSpace, Plane, RgbdPhoto,
 
 Span = tuple[float, float]
 CHEST_M, TOWARDS = 1.1, (0.2, 1.1)  # height of a chest; tilt of a high radar relative to the angle down to it
-HALF_M, TALL_M, CELL_M = 5.0, 2.4, 0.1  # of the room; of a cell of its free floor
+HALF_M, TALL_M, CELL_M = 5.0, 2.4, 0.1  # half width and height of the room; cell size of its free floor
 CORNERS = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])[:, :, None]
 
 
@@ -28,12 +28,12 @@ class Variation:
     """Ranges from which each recording samples uniformly (`tempo` log-uniformly).
 
     `tempo` scales the speed of a motion, times `way_tempo` for locomotion (slower in a small room); `vigour` scales the
-    excursion of joints from their mean position. Of a path through the room: `near_m` and `far_m` bound its distances,
+    excursion of joints from their mean position. For a path through the room `near_m` and `far_m` bound its distances,
     `way_s` is its duration in the motion's own time (a window is any part of it), `hurry` the variation of tempo (rms
-    of its logarithm). `turn_deg`: standard deviation of the heading of stationary people. `tilt_deg`
+    of its logarithm). `turn_deg` is the standard deviation of the heading of stationary people. `tilt_deg`
     rotates the reported points about the radar, up where positive. Values in `_db` change the noise figure, the CFAR
     threshold, the receiver gain, the albedo of skin, and the reflectivity of arms and legs relative to the trunk.
-    In `high_share` of the recordings the radar hangs `high_m` high and looks down as well.
+    In `high_share` of the recordings the radar is mounted `high_m` high and tilted down.
     """
 
     tempo: Span = (0.75, 1.6)
@@ -69,7 +69,7 @@ class Variation:
 
 @dataclass(frozen=True, kw_only=True)
 class VariationSample:
-    """The sampled conditions of one recording, in the units of Variation."""
+    """Sampled conditions of one recording, in the units of Variation."""
 
     tempo: float
     reach_m: Span
@@ -97,13 +97,18 @@ class VariationSample:
 
     @property
     def start_m(self) -> tuple[float, float]:
-        """Where the person starts, (x right, y away)."""
+        """Start of the person, (x right, y away) in metres."""
         azimuth = np.radians(self.azimuth_deg)
         return float(self.distance_m * np.sin(azimuth)), float(self.distance_m * np.cos(azimuth))
 
 
 def sample_variation(variation: Variation, rng: np.random.Generator) -> VariationSample:
-    """Samples the conditions of one recording."""
+    """Samples the conditions of one recording.
+
+    Args:
+        variation: Ranges of the conditions.
+        rng: Random stream.
+    """
 
     def uniform(*names: str) -> dict[str, float]:
         return {name: rng.uniform(*getattr(variation, name)) for name in names}
@@ -120,7 +125,13 @@ def sample_variation(variation: Variation, rng: np.random.Generator) -> Variatio
 
 
 def hung_high(now: VariationSample, variation: Variation, rng: np.random.Generator) -> VariationSample:
-    """The conditions, in a share of them with a radar that hangs high and looks down, more or less at the person."""
+    """Conditions with the radar mounted high and tilted towards the person, with probability `high_share`.
+
+    Args:
+        now: Sampled conditions.
+        variation: Ranges of the high mount.
+        rng: Random stream.
+    """
     is_high = rng.random() < variation.high_share
     height, towards = rng.uniform(*variation.high_m), rng.uniform(*TOWARDS)
     if not is_high:
@@ -141,9 +152,14 @@ def _panel(rng: np.random.Generator) -> Panel:
 
 
 def random_scene(*, floor_z_m: float, wall_y_m: float | None, panels: tuple[Panel, ...] = ()) -> Scene:
-    """A concrete floor `floor_z_m` below the radar (negative), perhaps a wall ahead, and panels; all floor is free.
+    """A concrete floor, optionally a wall ahead, and panels; the whole floor is free.
 
     Panels reflect and occlude, but motion planning ignores them: place them where nobody walks.
+
+    Args:
+        floor_z_m: Height of the floor relative to the radar in metres, negative.
+        wall_y_m: Distance of the wall, None for none.
+        panels: Flat upright objects.
     """
     planes = [_plane("floor", (0.0, HALF_M, floor_z_m), (0, 0, 1), (1, 0, 0), "concrete", (HALF_M, HALF_M))]
     if wall_y_m is not None:
@@ -165,7 +181,7 @@ def random_scene(*, floor_z_m: float, wall_y_m: float | None, panels: tuple[Pane
     if wall_y_m is not None:
         free &= y_m[:, None] < wall_y_m
     return Scene(
-        photo=RgbdPhoto(  # that sees everything ahead, for motion planning asks what is in the picture
+        photo=RgbdPhoto(  # with everything ahead in view, since motion planning tests what is in the picture
             rgb=np.zeros((2, 2, 3), np.uint8),
             depth_m=np.full((2, 2), np.nan),
             intrinsics=CameraIntrinsics(fx=0.05, fy=0.05, cx=1.0, cy=1.0, width=2, height=2),

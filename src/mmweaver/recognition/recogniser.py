@@ -1,7 +1,7 @@
-"""A trained recogniser: a folder of safe files that labels windows of point clouds.
+"""A trained recogniser, stored as a folder of safe files, that labels windows of point clouds.
 
 Reference: docs/recognise.md. `load_recogniser(folder)` reads one; `Recogniser.recognise` labels a recording,
-`LiveRecogniser` frames as they come.
+`LiveRecogniser` frames as they arrive.
 """
 
 import json
@@ -32,7 +32,7 @@ META_FILE, TREES_FILE, FEATURES_FILE = "meta.json", "trees.npz", "features.npz"
 MODEL_FILES = (META_FILE, TREES_FILE, FEATURES_FILE)
 KIND, VERSION = "mmweaver recogniser", 1
 QUANTILES = np.concatenate([[0.005, 0.02], np.linspace(0.05, 0.95, 19), [0.98, 0.995]])
-FEWEST = 20  # known values for a distribution
+FEWEST = 20  # minimum number of known values for a distribution
 
 Quantiles = Float[np.ndarray, "quantile feature"]
 
@@ -44,54 +44,78 @@ class Recognition:
     first_frame: int
     num_frames: int
     label: str
-    votes: dict[str, float]  # of each label, together 1
-    is_outside: bool  # the window is unlike everything that was generated: do not trust the label
+    votes: dict[str, float]  # by label, with a sum of 1
+    is_outside: bool  # the window is out of distribution: do not trust the label
 
     def as_json(self) -> str:
-        """One line."""
+        """The record as one line of JSON."""
         votes = {name: round(value, 3) for name, value in self.votes.items()}
         return json.dumps({**asdict(self), "votes": votes}, ensure_ascii=False)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Recogniser:
-    """Trees over window features, and what was generated to train them."""
+    """Trees over window features, and the distribution of their training data."""
 
     settings: RecordingSettings
     names: tuple[str, ...]  # of the features
     trees: TreeEnsemble
     generated: Quantiles  # of generated windows
-    outside_above: float  # a window is outside where this share of its features is exceeded
+    outside_above: float  # maximum share of features beyond the outer quantiles within the distribution
     meta: dict[str, Any]
-    points: WindowFilter = field(default_factory=WindowFilter)  # which of a window's count
+    points: WindowFilter = field(default_factory=WindowFilter)  # filter of a window's points
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """In the order of the votes."""
+        """Labels in the order of the votes."""
         return self.settings.labels
 
     def contradictions(self, recordings: Sequence[PointRecording]) -> list[str]:
-        """What recordings show that cannot be if the task is right; models of before know too little to say."""
+        """Contradictions between recordings and the task, one line each.
+
+        None for models that do not know their radar.
+        """
         return [] if self.points.radar is None else contradictions(recordings, self.points.radar)
 
     def features(self, windows: Sequence[PointRecording]) -> Features:
-        """Features of windows (window, feature), float32, nan = unknown."""
+        """Features of windows.
+
+        Args:
+            windows: Points of each window.
+
+        Returns:
+            Features (window, feature), float32, nan where unknown.
+        """
         return recognition_features([self.points(window) for window in windows], self.names)
 
     def votes(self, features: Features) -> Float[np.ndarray, "window label"]:
-        """The share of the trees' votes for each label, of features as `features` gives them."""
+        """Votes of the trees.
+
+        Args:
+            features: As given by `features`.
+
+        Returns:
+            Share of each label (window, label).
+        """
         return self.trees.probabilities(features)
 
     def is_outside(self, features: Features) -> Bool[np.ndarray, " window"]:
-        """Whether windows are unlike everything that was generated."""
+        """Mask (window,) of windows that are out of the distribution of generated ones."""
         return outside_share(features, self.generated) > self.outside_above
 
     def recognise(self, recording: PointRecording) -> list[Recognition]:
-        """The label of each window of a recording; windows are those of `windows_of`."""
+        """Labels a recording.
+
+        Args:
+            recording: Points of all frames.
+
+        Returns:
+            One record per window of `windows_of`.
+        """
         return self.recognise_windows(windows_of(recording, self.settings))
 
     def recognise_windows(self, windows: Sequence[PointRecording]) -> list[Recognition]:
-        """The label of each window."""
+        """Labels windows."""
         if not windows:
             return []
         features = self.features(windows)
@@ -108,14 +132,22 @@ class Recogniser:
         ]
 
     def recognise_cloud(self, cloud: PointCloud, num_frames: int) -> list[Recognition]:
-        """The label of each window of a point cloud (a generated one, say) of so many frames."""
+        """Labels a point cloud, such as a generated one.
+
+        Args:
+            cloud: The points.
+            num_frames: Number of frames, from 0.
+
+        Returns:
+            One record per window of `windows_of`.
+        """
         return self.recognise(
             PointRecording(name="", cloud=cloud, num_frames=num_frames, frame_rate_hz=self.settings.frame_rate_hz)
         )
 
 
 def quantiles_of(features: Features) -> Quantiles:
-    """Quantiles of the known values of each feature; nan with too few."""
+    """Quantiles (quantile, feature) of the known values of each feature; nan where there are too few."""
     columns = [column[np.isfinite(column)] for column in features.T]
     none = np.full(len(QUANTILES), np.nan)
     return np.stack(
@@ -124,7 +156,12 @@ def quantiles_of(features: Features) -> Quantiles:
 
 
 def outside_share(features: Features, generated: Quantiles) -> Float[np.ndarray, " window"]:
-    """The share of each window's known features that lie beyond the outer quantiles of generated windows."""
+    """Share of each window's known features beyond the outer quantiles of generated windows.
+
+    Args:
+        features: Features (window, feature).
+        generated: Quantiles (quantile, feature) of generated windows.
+    """
     known = np.isfinite(features) & np.isfinite(generated[0])
     with np.errstate(invalid="ignore"):
         out = (features < generated[0]) | (features > generated[-1])
@@ -132,16 +169,24 @@ def outside_share(features: Features, generated: Quantiles) -> Float[np.ndarray,
 
 
 def recognition_features(windows: Sequence[PointRecording], names: tuple[str, ...] | None = None) -> Features:
-    """Features (window, feature) of windows, float32, nan = unknown; by default all of `window_row`."""
+    """Features of windows.
+
+    Args:
+        windows: Points of each window.
+        names: Names of the features; by default all of `window_row`.
+
+    Returns:
+        Features (window, feature), float32, nan where unknown.
+    """
     rows = [window_row(window) for window in windows]
     chosen = names or tuple(rows[0])
     return np.array([[row[name] for name in chosen] for row in rows], np.float32).reshape(len(rows), len(chosen))
 
 
 def window_row(window: PointRecording) -> Row:
-    """All features of a window by name that a simulation can predict.
+    """All features of a window, by name, that a simulation can predict.
 
-    Heights count from the body, and unevenness depends on the beam.
+    Features of height and unevenness depend on body and beam, and are excluded.
     """
     row = {**window_features(window), **body_features(window)}
     kept = {name: value for name, value in row.items() if not UNPREDICTABLE & set(name.split("_"))}
@@ -150,7 +195,12 @@ def window_row(window: PointRecording) -> Row:
 
 # files --------------------------------------------------------------------------------------------------------------
 def save_recogniser(folder: Path, model: Recogniser) -> None:
-    """Writes the folder's files; meta.json is the last, so a folder with it is complete."""
+    """Writes a recogniser. meta.json is written last, so a folder that contains it is complete.
+
+    Args:
+        folder: The folder, which must exist.
+        model: The recogniser.
+    """
     write_trees(folder / TREES_FILE, model.trees)
     with atomic_file(folder / FEATURES_FILE) as temporary, temporary.open("wb") as stream:
         np.savez_compressed(stream, names=np.array(model.names), generated=model.generated, busy=model.points.busy)
@@ -169,7 +219,11 @@ def save_recogniser(folder: Path, model: Recogniser) -> None:
 
 
 def load_recogniser(folder: Path | str) -> Recogniser:
-    """Reads a folder of `mmweaver recognise train`. Raises InputError where it is none, or is damaged."""
+    """Loads a folder of `mmweaver recognise train`.
+
+    Raises:
+        InputError: If it is not a recogniser, or damaged.
+    """
     folder = Path(folder)
     check_exists(folder, "a folder of mmweaver recognise train")
     if not (folder / META_FILE).is_file():

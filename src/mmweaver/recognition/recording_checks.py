@@ -1,6 +1,6 @@
-"""Do recordings agree with the radar and the columns of a task? Their points alone decide, no labels.
+"""Checks of recordings against the radar and columns of a task, by their points alone, without labels.
 
-Displacement follows from velocity; no point lies behind the radar; velocities are multiples of the radar's step. Where
+Displacement follows from velocity; no point is behind the radar; velocities are multiples of the radar's step. Where
 recordings contradict the task, the recogniser was trained for another board than the one that recorded.
 """
 
@@ -12,16 +12,16 @@ from mmweaver.recognition.point_recordings import STILL_MPS, PointRecording, is_
 from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.spatiotemporal_features import near_median
 
-LAG_S = 0.5  # over which ways are compared with velocities
-MIN_WAY_M, FARTHEST_M = 0.1, 1.5  # in that time: rms, below which there is no displacement; beyond, it is another echo
-FEWEST = 200  # points, and a tenth as many ways
+LAG_S = 0.5  # over which displacements are compared with velocities
+MIN_WAY_M, FARTHEST_M = 0.1, 1.5  # displacement in that time: minimum rms, and maximum before it is another echo
+FEWEST = 200  # points, and a tenth as many displacements
 RELATED, OPPOSED = 0.6, -0.4  # correlations
-SLOWEST, FASTEST = 0.6, 1.6  # ways relative to what velocities say
+SLOWEST, FASTEST = 0.6, 1.6  # displacements relative to the integral of velocity
 BEHIND, ASIDE_RAD = 0.05, np.radians(50)
 TOO_FAST, OFF_STEP, TOLERANCE = 0.005, 0.2, 0.1  # shares of moving points; of a step
 HARDLY, MOSTLY = 0.01, 0.6  # shares of points at rest
-GROUPED, UNGROUPED = 0.05, 0.3  # shares of points that have a neighbour where firmware does, or does not, group these
-APART_M, OFTEN = 1.2, 0.25  # between two that move; share of the frames in which something moves
+GROUPED, UNGROUPED = 0.05, 0.3  # shares of points with a neighbour if the firmware does, or does not, group them
+APART_M, OFTEN = 1.2, 0.25  # distance of two moving objects; share of the frames with motion
 WHAT_TO_DO = {
     "cfg": "name the .cfg that the board was sent",
     "columns": "check the directions of `columns`",
@@ -32,7 +32,15 @@ Lines = Iterator[tuple[str, str]]  # what is wrong; a word of WHAT_TO_DO, or wha
 
 
 def contradictions(recordings: Sequence[PointRecording], radar: Quantisation) -> list[str]:
-    """What recordings show that cannot be if the task is right, and what to do about it; empty: nothing."""
+    """Properties of recordings that are impossible if the task is right, with advice.
+
+    Args:
+        recordings: Recordings of the task; of fewer than 200 points nothing is checked.
+        radar: Steps of range and velocity, and grouping.
+
+    Returns:
+        One line per contradiction.
+    """
     clouds = [recording.cloud for recording in recordings]
     x, y, velocity = (
         np.concatenate([np.zeros(0), *(getattr(cloud, name) for cloud in clouds)])
@@ -92,7 +100,7 @@ def _check_ways(recordings: Sequence[PointRecording], radar: Quantisation) -> Li
 
 
 def _ways(recordings: Sequence[PointRecording], fastest_mps: float) -> tuple[np.ndarray, np.ndarray]:
-    """Changes of the mean range of moving points within LAG_S, and those by their velocities, (way,)."""
+    """Changes of the mean range of moving points within LAG_S, and those predicted by their velocities, (way,)."""
     ways = [np.zeros((2, 0))]
     for recording in recordings:
         cloud, frames = near_median(recording.cloud), recording.num_frames
@@ -126,7 +134,15 @@ def _check_neighbours(recordings: Sequence[PointRecording], radar: Quantisation)
 
 
 def neighbour_shares(recordings: Sequence[PointRecording], radar: Quantisation) -> tuple[float, float]:
-    """Shares of the points with another one a range step, and a velocity step, farther on in the same frame."""
+    """Shares of the points with a neighbour one step farther in the same frame.
+
+    Args:
+        recordings: The recordings.
+        radar: Steps of range and velocity.
+
+    Returns:
+        Shares with a neighbour in range, and in velocity.
+    """
     pairs, total = np.zeros(2), 0
     for recording in recordings:
         cloud = recording.cloud
@@ -142,7 +158,7 @@ def neighbour_shares(recordings: Sequence[PointRecording], radar: Quantisation) 
 
 
 def _check_others(recordings: Sequence[PointRecording], radar: Quantisation) -> Lines:
-    """Whoever moves cannot be in two places."""
+    """A person cannot be in two places."""
     apart = moving = 0
     for recording in recordings:
         cloud = recording.cloud.select(is_moving(recording.cloud))

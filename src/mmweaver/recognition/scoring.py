@@ -1,4 +1,4 @@
-"""Scores of a recogniser on labelled recordings, with intervals, and how far these lie from what was generated."""
+"""Scores of a recogniser on labelled recordings, with confidence intervals, and their distance from generated data."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -16,24 +16,33 @@ from mmweaver.recognition.window_features import moving_points
 
 RESAMPLINGS = 2000
 LONG_WINDOWS = 3  # windows that are averaged: 6 s
-LISTED = 10  # features that differ most
-MISTAKEN = 0.3  # of generated windows of a label, that are taken for another label
-FAR = 0.5  # Kolmogorov-Smirnov distance above which a feature lies elsewhere
-MAX_FAR, MAX_OUTSIDE = 0.25, 0.3  # shares of features and of windows above which a warning is due
+LISTED = 10  # features with the largest differences
+MISTAKEN = 0.3  # share of generated windows of a label that are confused with another label
+FAR = 0.5  # Kolmogorov-Smirnov distance above which a feature is out of distribution
+MAX_FAR, MAX_OUTSIDE = 0.25, 0.3  # shares of features and of windows above which a warning is given
 
 
 @dataclass(frozen=True, kw_only=True)
 class Evaluation:
-    """Votes (window, activity), index of the true activity (window,), and index of the recording (window,)."""
+    """Votes of a recogniser on labelled windows.
+
+    Attributes:
+        classes: Names of the activities.
+        votes: Votes (window, activity).
+        truth: Index of the true activity (window,).
+        recording: Index of the recording (window,).
+        names: Names of the recordings.
+    """
 
     classes: tuple[str, ...]
     votes: Float[np.ndarray, "window activity"]
     truth: Int[np.ndarray, " window"]
     recording: Int[np.ndarray, " window"]
-    names: tuple[str, ...]  # of the recordings
+    names: tuple[str, ...]
 
     @property
     def guess(self) -> Int[np.ndarray, " window"]:
+        """Index of the recognised activity (window,)."""
         return np.argmax(self.votes, axis=1)
 
     def part(self, which: np.ndarray) -> "Evaluation":
@@ -41,7 +50,11 @@ class Evaluation:
         return replace(self, votes=self.votes[which], truth=self.truth[which], recording=self.recording[which])
 
     def pooled(self, group: np.ndarray) -> "Evaluation":
-        """Mean vote of the windows of each group; `group` (window,)."""
+        """Mean vote over the windows of each group.
+
+        Args:
+            group: Group number (window,).
+        """
         _, first, inverse = np.unique(group, return_index=True, return_inverse=True)
         total = np.zeros((len(first), self.votes.shape[1]))
         np.add.at(total, inverse.ravel(), self.votes)
@@ -52,6 +65,10 @@ class Evaluation:
 def balanced_accuracy(truth: Int[np.ndarray, " n"], guess: Int[np.ndarray, " n"]) -> float:
     """Recall averaged over the classes that occur.
 
+    Args:
+        truth: True classes (n,).
+        guess: Recognised classes (n,).
+
     >>> balanced_accuracy(np.array([0, 0, 0, 1]), np.array([0, 0, 0, 0]))
     0.5
     """
@@ -61,12 +78,29 @@ def balanced_accuracy(truth: Int[np.ndarray, " n"], guess: Int[np.ndarray, " n"]
 def confusion(
     truth: Int[np.ndarray, " n"], guess: Int[np.ndarray, " n"], classes: int
 ) -> Int[np.ndarray, "true guessed"]:
-    """Confusion matrix in counts: true activity (row), recognised activity (column)."""
+    """Confusion matrix in counts.
+
+    Args:
+        truth: True activities (n,).
+        guess: Recognised activities (n,).
+        classes: Number of activities.
+
+    Returns:
+        Counts (true, recognised).
+    """
     return np.bincount(truth * classes + guess, minlength=classes**2).reshape(classes, classes)
 
 
 def interval(evaluation: Evaluation, seed: int = 0) -> tuple[float, float]:
-    """95 % bootstrap interval of the balanced accuracy, resampling recordings within each activity."""
+    """95 % bootstrap interval of the balanced accuracy, resampling recordings within each activity.
+
+    Args:
+        evaluation: Votes on labelled windows.
+        seed: Seed of the resampling.
+
+    Returns:
+        Lower and upper end.
+    """
     rng, recordings = stream(seed, "recordings drawn again"), len(evaluation.names)
     hits = np.bincount(evaluation.recording, evaluation.guess == evaluation.truth, minlength=recordings)
     count = np.bincount(evaluation.recording, minlength=recordings).astype(float)
@@ -83,7 +117,7 @@ def interval(evaluation: Evaluation, seed: int = 0) -> tuple[float, float]:
 
 
 def report(evaluation: Evaluation) -> dict[str, Any]:
-    """Balanced accuracy of windows, groups of three and whole recordings, with intervals and baseline."""
+    """Balanced accuracy of windows, of groups of three and of whole recordings, with intervals and baseline."""
     place = np.concatenate([np.arange(n) for n in np.bincount(evaluation.recording) if n])
     classes = len(evaluation.classes)
     rows: dict[str, Any] = {"classes": list(evaluation.classes), "recordings": len(np.unique(evaluation.recording))}
@@ -104,12 +138,20 @@ def report(evaluation: Evaluation) -> dict[str, Any]:
 
 # scores of recordings -----------------------------------------------------------------------------------------------
 def score_recordings(model: Recogniser, recordings: Sequence[PointRecording]) -> dict[str, Any]:
-    """Scores on labelled recordings: `window`, `three_windows`, `recording`, as `recognise score --json` has them.
+    """Scores on labelled recordings, as in `recognise score --json`.
 
-    With them `generated_on_generated` (people who were generated and held out) and `distance` (recorded windows
-    against generated ones, without labels), `warning` where the recordings lie outside, `contradictions`: what they
-    show that cannot be if the task is right, `left_out`: what moves all the time in one place and was left out, and
-    `hardly_distinct`: labels that the radar hardly tells apart. Raises InputError where the recordings give no window.
+    Args:
+        model: The recogniser.
+        recordings: Labelled recordings.
+
+    Returns:
+        `window`, `three_windows` and `recording`; `generated_on_generated` (accuracy on generated people that were held
+        out); `distance` (recorded windows against generated ones, without labels); `warning` where the recordings are
+        out of distribution; `contradictions` with the task; `left_out`, places with persistent motion that were
+        ignored; and `hardly_distinct`, labels that the radar cannot discriminate.
+
+    Raises:
+        InputError: If the recordings contain no complete window.
     """
     cut = [windows_of(recording, model.settings) for recording in recordings]
     windows = [window for own in cut for window in own]
@@ -144,7 +186,7 @@ def score_recordings(model: Recogniser, recordings: Sequence[PointRecording]) ->
 
 
 def mask_persistent_motion(model: Recogniser, recordings: Sequence[PointRecording]) -> tuple[Recogniser, list[str]]:
-    """The recogniser without what moves all the time in one place of these recordings, and what to say of it."""
+    """The recogniser without cells of persistent motion in these recordings, and lines of text about them."""
     cells = persistent_motion_cells(recordings, model.points.radar)
     points = model.points.masking(cells)
     if len(points.busy) == len(model.points.busy):
@@ -153,7 +195,10 @@ def mask_persistent_motion(model: Recogniser, recordings: Sequence[PointRecordin
 
 
 def hardly_distinct(model: Recogniser) -> list[str]:
-    """Labels that this radar hardly tells apart, by generated people: no recording can be expected to do better."""
+    """Labels that this radar hardly discriminates, judged by generated people.
+
+    Recordings cannot be expected to do better.
+    """
     expected = model.meta.get("generated_on_generated") or {}
     found: list[str] = []
     for label, row in zip(model.labels, expected.get("confusion", []), strict=False):
@@ -168,7 +213,15 @@ def hardly_distinct(model: Recogniser) -> list[str]:
 
 
 def distance(model: Recogniser, features: Features) -> dict[str, Any]:
-    """How far features of recorded windows (window, feature) lie from those of generated ones."""
+    """Distance of recorded windows from generated ones in feature space.
+
+    Args:
+        model: The recogniser.
+        features: Features (window, feature) of recorded windows.
+
+    Returns:
+        Number, mean and largest of the feature distances, and shares out of distribution.
+    """
     far = feature_distances(features, model.generated, model.names)
     values = np.array(list(far.values()) or [0.0])
     return {
@@ -181,7 +234,13 @@ def distance(model: Recogniser, features: Features) -> dict[str, Any]:
 
 
 def feature_distances(features: Features, generated: Quantiles, names: tuple[str, ...]) -> dict[str, float]:
-    """Kolmogorov-Smirnov distance of each feature between recorded and generated windows, at the stored quantiles."""
+    """Kolmogorov-Smirnov distance of each feature between recorded and generated windows, at the stored quantiles.
+
+    Args:
+        features: Features (window, feature) of recorded windows.
+        generated: Quantiles of generated windows.
+        names: Names of the features.
+    """
     found: dict[str, float] = {}
     for name, values, edges in zip(names, features.T, generated.T, strict=True):
         values = np.sort(values[np.isfinite(values)])
@@ -194,7 +253,7 @@ def feature_distances(features: Features, generated: Quantiles, names: tuple[str
 
 
 def warning(found: dict[str, Any]) -> str | None:
-    """What to say where recordings lie outside what was generated; None where they do not."""
+    """Text of the warning for recordings that are out of distribution, None if they are not."""
     if found["features_far"] <= MAX_FAR and found["windows_outside"] <= MAX_OUTSIDE:
         return None
     largest = ", ".join(found["largest"][:3])

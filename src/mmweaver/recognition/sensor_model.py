@@ -1,4 +1,4 @@
-"""What a board, perhaps tilted, reports of a person in a random scene: ray-traced samples, clutter, the firmware."""
+"""Points that a board, possibly tilted, reports of people in a random scene: ray-traced samples, clutter, firmware."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -19,14 +19,14 @@ from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from
 from mmweaver.signal.firmware import firmware_points
 from mmweaver.signal.firmware_cfar import counts_per_db
 
-BEHIND_M = 0.3  # least distance of a wall from the body
+BEHIND_M = 0.3  # minimum distance of a wall from the body
 AT_M = 2.0  # range at which the level of diffuse clutter is specified
 NEAREST_M = 0.3
 
 
 @dataclass(frozen=True, kw_only=True)
 class PointRadar:
-    """A radar, the firmware that makes its points, and how finely skin is sampled."""
+    """A radar, the firmware that computes its points, and the number of skin points."""
 
     radar: RadarConfig
     firmware: FirmwareSettings
@@ -36,17 +36,17 @@ class PointRadar:
 def observed_cloud(
     board: PointRadar, now: VariationSample, pose: PoseSequence | Sequence[PoseSequence], frames: int, seed: int
 ) -> PointCloud:
-    """Points of one person, or of an empty room, under the sampled conditions.
+    """Points of one person, several, or an empty room, under sampled conditions.
 
     Args:
         board: Radar and firmware.
         now: Room, mount, noise and skin.
-        pose: Motion in the radar's level axes; an empty tuple: an empty room.
+        pose: Motion in the radar's level axes; an empty tuple for an empty room.
         frames: Number of frames, from time 0.
-        seed: Of noise, speckle and clutter.
+        seed: Seed of noise, speckle and clutter.
 
     Returns:
-        Points in the axes of the board, which looks down by `tilt_deg`.
+        Points in the axes of the board, which is tilted down by `tilt_deg`.
     """
     radar = replace(
         board.radar,
@@ -71,7 +71,7 @@ def observed_cloud(
 
 
 def _less_sensitive(settings: FirmwareSettings, by_db: float, num_antennas: int) -> FirmwareSettings:
-    """Settings with CFAR thresholds raised by `by_db`, in the device's counts."""
+    """Settings with CFAR thresholds raised by `by_db`, in counts of the device."""
     counts = round(by_db * counts_per_db(settings.device, num_antennas))
     cfars = (settings.range_cfar, settings.doppler_cfar)
     high, low = (None if cfar is None else replace(cfar, threshold=cfar.threshold + counts) for cfar in cfars)

@@ -1,7 +1,7 @@
-"""Where on the body motion is, what happens first and what last: features of the moving points near their median.
+"""Place and order of motion on the body: features of the moving points near their median.
 
-Raising an arm and letting it fall differ in their order alone. Places count from the body's own median, so that they
-say nothing of where the radar stands; sides are kept, as a left arm is none of the right.
+Raising an arm and lowering it differ in order alone. Positions are relative to the median of the body, so they do not
+depend on the position of the radar; sides are kept, since left and right arms differ.
 """
 
 import itertools
@@ -15,11 +15,11 @@ from mmweaver.recognition.point_recordings import PointRecording, is_moving
 from mmweaver.recognition.window_features import Row, correlation, mean_of
 
 FEWEST = 6  # moving points for any order
-BODY_M, NEAR_M = 1.2, 0.6  # from the body's median: beyond is another echo; static points of the body
+BODY_M, NEAR_M = 1.2, 0.6  # from the body's median: maximum of moving points, and of static points of the body
 SEGMENTS = 6
 ENDS = (0.05, 0.95)  # quantiles of the times of moving points: when motion begins and ends
 ENERGY_ENDS = (0.04, 0.96)  # the same by energy
-MIN_ENERGY = 1e-3  # share of the energy in a segment that is known
+MIN_ENERGY = 1e-3  # minimum share of the energy in a segment with known values
 QUARTERS = ("left_high", "right_high", "left_low", "right_low")
 
 
@@ -27,7 +27,7 @@ def _curves(names: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(f"{name}_{segment}" for name, segment in itertools.product(names, range(SEGMENTS)))
 
 
-# In the order of columns that recognisers were trained with.
+# The order of columns is that of existing recognisers.
 TIMELINE = (
     *(f"order_{name}" for name in _curves(("share", "velocity", "speed", "up", "out", "aside"))),
     *["fast_up", "fast_out", "fast_aside", "reach_up_above", "reach_up_below", "reach_out_above", "reach_out_below"],
@@ -83,7 +83,7 @@ COURSE = tuple(
 
 
 def spatiotemporal_features(window: PointRecording) -> Row:
-    """Named features of one window; nan means too few points."""
+    """Named features of one window; nan where there are too few points."""
     body = near_median(window.cloud)
     if len(body.frame) < FEWEST:
         return dict.fromkeys((*TIMELINE, *SIDES, *COURSE), np.nan)
@@ -91,7 +91,7 @@ def spatiotemporal_features(window: PointRecording) -> Row:
 
 
 def near_median(cloud: PointCloud) -> PointCloud:
-    """Moving points near their median."""
+    """Moving points within BODY_M of their median along each axis."""
     moving = cloud.select(is_moving(cloud))
     if not len(moving.frame):
         return moving
@@ -129,7 +129,7 @@ def _segment_row(word: str, curves: Mapping[str, np.ndarray]) -> Row:
 
 
 def _turns(time_s: np.ndarray, velocity: np.ndarray, begin_s: float, end_s: float) -> Row:
-    """When the body approaches and recedes most, and how often that changes."""
+    """Times of the strongest approach and recession, and the rate of their changes."""
     lasts_s = max(end_s - begin_s, 1e-9)
     away, near = (
         float((np.average(time_s[which], weights=np.abs(velocity[which])) - begin_s) / lasts_s)
@@ -152,7 +152,7 @@ def _turns(time_s: np.ndarray, velocity: np.ndarray, begin_s: float, end_s: floa
 
 # sides and heights --------------------------------------------------------------------------------------------------
 def _sides(window: PointRecording, body: PointCloud) -> Row:
-    """Where on the body motion is: left or right, high or low, and which of these move together."""
+    """Place of motion on the body: left or right, high or low, and which of these move together."""
     aside, up = body.x_m - np.median(body.x_m), body.z_m - np.median(body.z_m)
     velocity, speed = body.radial_velocity_mps, np.abs(body.radial_velocity_mps)
     row = {
@@ -184,7 +184,7 @@ def _sides(window: PointRecording, body: PointCloud) -> Row:
 
 
 def _rest_offsets(cloud: PointCloud, body: PointCloud) -> Row:
-    """Where motion is relative to the points at rest near it."""
+    """Position of motion relative to the static points near it."""
     near = np.hypot(cloud.x_m - np.median(body.x_m), cloud.y_m - np.median(body.y_m)) < NEAR_M
     rest = cloud.select(near & (np.abs(cloud.radial_velocity_mps) < 0.1))
     if len(rest.frame) < FEWEST:
@@ -197,17 +197,17 @@ def _rest_offsets(cloud: PointCloud, body: PointCloud) -> Row:
 
 # the course of brisk motion -----------------------------------------------------------------------------------------
 def _course(window: PointRecording, body: PointCloud) -> Row:
-    """Where brisk points are from the motion's beginning to its end, and how fast.
+    """Position and speed of brisk points from the beginning to the end of motion.
 
-    The timeline counts points, most of which are those of a body that hardly moves; here each weighs as its speed
-    cubed, so that a rest before or after a motion changes nothing.
+    The timeline counts points, most of which belong to a body that hardly moves; here each is weighted by its speed
+    cubed, so that rest before or after a motion changes nothing.
     """
     velocity = body.radial_velocity_mps
     energy = np.abs(velocity) ** 3
     middle_s = (body.frame + 0.5) / window.frame_rate_hz
     begin_s, end_s = _weighted_quantiles(middle_s, energy, ENERGY_ENDS) + np.array([-0.5, 0.5]) / window.frame_rate_hz
     place = (middle_s - begin_s) / (end_s - begin_s) * SEGMENTS
-    # segments overlap by half, as a brisk motion has fewer frames than segments
+    # segments overlap by half, since a brisk motion has fewer frames than segments
     weight = np.clip(1 - np.abs(place - (np.arange(SEGMENTS) + 0.5)[:, None]), 0, None) * energy
     total = weight.sum(axis=1)
 

@@ -1,7 +1,8 @@
-"""How a person performs an activity for a while: where, how fast, how widely, swaying, pausing, in which room.
+"""Performance of an activity by a person: place, tempo, amplitude, sway and pauses, in a room.
 
-Tempo, amplitude and sway belong to the person, and vary less between what one person does than between people. The
-same person stands in the same place before the same radar for every activity, so that none of these tells the label.
+Tempo, amplitude and sway belong to the person, and vary less between performances of one person than between people.
+The same person stands in the same place in front of the same radar for every activity, so none of these reveals the
+label.
 """
 
 from dataclasses import dataclass, replace
@@ -35,28 +36,38 @@ HURRY_HZ = (0.1, 0.5)  # frequencies of tempo changes along a path
 LEAD_S, LATEST_S = 0.75, 6.0  # a sequence is any part of what a person does, but its beginning
 NOISE_DB = (-8.0, 6.0)  # of the noise figure; copies of windows have less sensitive radars
 ARMS_DB = (-3.0, 14.0)  # relative to the trunk: a flat hand may face the radar or be turned away
-AROUND_M = (0.9, 1.2)  # how much nearer and farther than they stand people may move on the spot
-HIGH_SHARE = 0.25  # of radars of whose mount nothing is known
-HEIGHT_SPREAD_M, TILT_SPREAD_DEG = 0.05, 2.0  # about what is known of the mount
-HELD = ("stand", "sit", "kneel", "lie", "lie_on_seat", "recline")  # postures in which people do not step to and fro
+AROUND_M = (0.9, 1.2)  # range towards and away from the radar within which people move on the spot
+HIGH_SHARE = 0.25  # share of high mounts where the mount is unknown
+HEIGHT_SPREAD_M, TILT_SPREAD_DEG = 0.05, 2.0  # around a known mount
+HELD = ("stand", "sit", "kneel", "lie", "lie_on_seat", "recline")  # postures in which people do not shift their feet
 REST_S = (0.2, 0.8)  # before and after a single performance
-LATEST_EVENT = 0.7  # of the time that a sequence has more than what happens in it takes
-CLOSE_M, FAR_APART_M = 0.2, 0.5  # between the ankles of who stands, and of who stands with the legs apart
+LATEST_EVENT = 0.7  # latest start of an event, as a share of the spare time of the sequence
+CLOSE_M, FAR_APART_M = 0.2, 0.5  # distance of the ankles when standing, and when standing with the legs apart
 LIFTED_M, MIN_MOVED_M = 0.06, 0.03
 
 
 @dataclass(frozen=True, kw_only=True)
 class PerformancePrior:
-    """How people differ, and how one person differs between performances; spreads are of logarithms where relative.
+    """Variation between people, and between performances of one person; spreads of relative quantities are logarithmic.
 
-    `on_spot`: the usual tempo of what is done in place, relative to the motion library; `on_way` that of walks and runs
-    in a room, log-uniform over people; `single` that of a single performance, which people repeat briskly and widely.
-    `sway_mps`: speed of slow shifts of the whole body, log-uniform; `calm_sway_mps` of who holds still but for one
-    gesture, `held_sway_mps` of who stays in a posture.
-    `heading_deg`: standard deviation from facing the radar, `heading_of_performance_deg` that of one performance from
-    the person's usual. `wider_m`: how much farther apart than in the motion library narrow feet of who stays in place
-    are, uniform. `linger`: how much longer than on the way people stay where a movement begins, uniform. `at_turns`:
-    how much longer than in the library people who walk or run take to turn and set out again, uniform.
+    Attributes:
+        tempo_of_person: Spread of tempo between people.
+        tempo_of_performance: Spread of tempo between performances.
+        amplitude_of_person: Spread of amplitude between people.
+        amplitude_of_performance: Spread of amplitude between performances.
+        on_spot: Typical tempo of activities in place, relative to the motion library.
+        on_way: Tempo of walks and runs in a room, log-uniform over people.
+        single: Tempo of a single performance, which people do briskly and widely.
+        usual_amplitude: Typical amplitude, relative to the motion library.
+        single_amplitude: Amplitude of a single performance.
+        sway_mps: Speed of slow shifts of the whole body, log-uniform.
+        calm_sway_mps: The same of people who hold still except for one gesture.
+        held_sway_mps: The same of people who hold a posture.
+        heading_deg: Standard deviation from facing the radar.
+        heading_of_performance_deg: Standard deviation of a performance from the person's typical heading.
+        wider_m: Additional distance of the feet in place, relative to the motion library, uniform.
+        linger: Additional time at the beginning of a movement, relative to the movement, uniform.
+        at_turns: Additional time that walkers and runners take to turn, relative to the library, uniform.
     """
 
     tempo_of_person: float = 0.2
@@ -80,7 +91,7 @@ class PerformancePrior:
 
 @dataclass(frozen=True, kw_only=True)
 class Performer:
-    """One person with the radar and the room before them."""
+    """One person, with the radar and the room."""
 
     subject: int
     surroundings: VariationSample
@@ -94,7 +105,7 @@ class Performer:
 
 
 def task_variation(mount: Mount) -> Variation:
-    """The ranges of places, rooms and radars: wide, but for what is known of the mount."""
+    """Ranges of places, rooms and radars: wide, except for known properties of the mount."""
     near, far = mount.distance_m or (1.0, 3.2)
     known = Variation(
         distance_m=(near, far),
@@ -110,13 +121,20 @@ def task_variation(mount: Mount) -> Variation:
     if mount.height_m is None and mount.tilt_deg is None:
         known = replace(known, high_share=HIGH_SHARE)
     if mount.tilt_deg is not None:
-        # clouds are reported in the board's axes: a board that looks down sees people higher
+        # clouds are in the board's axes: a board tilted down reports people higher
         known = replace(known, tilt_deg=(mount.tilt_deg - TILT_SPREAD_DEG, mount.tilt_deg + TILT_SPREAD_DEG))
     return known
 
 
 def performer(prior: PerformancePrior, variation: Variation, index: int, seed: int) -> Performer:
-    """The index-th person; the same for all activities."""
+    """The index-th person, the same for all activities.
+
+    Args:
+        prior: How people differ.
+        variation: Ranges of places, rooms and radars.
+        index: Number of the person.
+        seed: Seed of everything that is sampled.
+    """
     rng = stream(seed, "performer", index)
     tempo, amplitude, heading = rng.normal(size=3).clip(-2, 2)
     return Performer(
@@ -134,7 +152,7 @@ def performer(prior: PerformancePrior, variation: Variation, index: int, seed: i
 
 @dataclass(frozen=True, kw_only=True)
 class Performance:
-    """A motion from its first frame on, and the surroundings it is seen in."""
+    """A motion from its first frame on, and its surroundings."""
 
     pose: PoseSequence
     lasts_s: float
@@ -144,21 +162,21 @@ class Performance:
 def perform(
     who: Performer, prior: PerformancePrior, sentence: str, *, seconds: float, once: bool, rng: np.random.Generator
 ) -> Performance:
-    """The person carries out a sentence: `once`, with a short rest before and after, or for this many seconds.
+    """A person's performance of a sentence, single or for a given time.
 
     Args:
         who: The person, with radar and room.
         prior: How performances differ.
-        sentence: What is done.
-        seconds: How long; what ends by itself and cannot be repeated (a fall) happens somewhere in them.
-        once: A single performance, as long as it takes.
-        rng: Of this performance.
+        sentence: The activity.
+        seconds: Duration; an event that cannot be repeated (a fall) happens at some time within it.
+        once: Whether it is a single performance of natural duration, with a short rest before and after.
+        rng: Random stream of this performance.
 
     Returns:
         The motion from the first frame on, in the radar's level axes.
 
     Raises:
-        InputError: Where the sentence cannot be carried out there.
+        InputError: If the sentence cannot be carried out in these surroundings.
     """
     plan = parse_sentence(sentence) if once else lasting(parse_sentence(sentence))
     is_event = not once and happens_once(plan)
@@ -220,17 +238,24 @@ def perform(
 
 
 def lasting(plan: MotionPlan) -> MotionPlan:
-    """The plan as something that goes on: what is done in place is done as often as time allows, not three times."""
+    """The plan as a continuing activity: actions in place are repeated as time allows, not three times."""
     return replace(plan, steps=tuple(step if step.moves else replace(step, count=0) for step in plan.steps))
 
 
 def happens_once(plan: MotionPlan) -> bool:
-    """Whether a plan ends by itself and cannot be repeated, as its end does not lead to its beginning."""
+    """Whether a plan ends and cannot be repeated, since its end does not lead back to its beginning."""
     return repeated(plan, LONGEST_S) is plan and not all(is_elastic(step) for step in plan.steps)
 
 
 def time_warped(time_s: np.ndarray, tempo: float, hurry: float, rng: np.random.Generator) -> np.ndarray:
-    """Times (time,) warped by a tempo whose logarithm varies by `hurry` rms; 0 stays 0."""
+    """Times warped by a varying tempo; 0 stays 0.
+
+    Args:
+        time_s: Times (time,) in seconds.
+        tempo: Mean tempo.
+        hurry: RMS variation of its logarithm.
+        rng: Random stream.
+    """
     omega, phase = 2 * np.pi * rng.uniform(*HURRY_HZ, (2, 1)), rng.uniform(0, 2 * np.pi, (2, 1))
     slower = np.exp(-hurry * np.sin(omega * time_s + phase).sum(axis=0)) / tempo
     reached = _integral(slower, time_s)
@@ -238,19 +263,30 @@ def time_warped(time_s: np.ndarray, tempo: float, hurry: float, rng: np.random.G
 
 
 def _integral(slowness: np.ndarray, time_s: np.ndarray) -> np.ndarray:
-    """Times (time,) at which a motion of this slowness is where it was at `time_s`, from 0."""
+    """Times (time,) at which a motion of this slowness reaches its state at `time_s`, from 0."""
     return np.concatenate([[0.0], np.cumsum((slowness[1:] + slowness[:-1]) / 2 * np.diff(time_s))])
 
 
 def pelvis_speed_mps(pose: PoseSequence, start_s: float, end_s: float) -> float:
-    """Mean horizontal speed of the pelvis in m/s."""
+    """Mean horizontal speed of the pelvis in m/s.
+
+    Args:
+        pose: The motion.
+        start_s: Start of the interval in seconds.
+        end_s: End of the interval in seconds.
+    """
     inside = (pose.time_s >= start_s) & (pose.time_s <= end_s)
     path_m = np.linalg.norm(np.diff(pose.joints_m[inside, joint("pelvis"), :2], axis=0), axis=1).sum()
     return float(path_m / (end_s - start_s))
 
 
 def scaled_excursion(joints_m: np.ndarray, vigour: float) -> np.ndarray:
-    """Joints (time, 22, 3) with their excursion from the mean, relative to the pelvis, scaled by `vigour`."""
+    """Scales the excursion of joints from their mean, relative to the pelvis.
+
+    Args:
+        joints_m: Joints (time, 22, 3).
+        vigour: Factor of the excursion.
+    """
     root = joints_m[:, :1].copy()
     root[..., 2] = 0.0
     local = joints_m - root
@@ -267,9 +303,13 @@ def sway_m(time_s: np.ndarray, speed_mps: float, rng: np.random.Generator) -> np
 
 
 def spread_feet(joints_m: Joints, wider_m: float) -> Joints:
-    """Joints (frame, joint, 3) with the feet up to `wider_m` farther apart, and the knees half as much.
+    """Joints with the feet farther apart, and the knees half as much.
 
-    Feet that stand apart already are moved less. While one foot is in the air, the body moves over the other one.
+    Feet that are apart already are moved less. While one foot is in the air, the body moves over the other one.
+
+    Args:
+        joints_m: Joints (frame, joint, 3) in metres.
+        wider_m: Maximum additional distance of the feet in metres.
     """
     across = joints_m[:, joint("left_hip")] - joints_m[:, joint("right_hip")]
     across = across * (1.0, 1.0, 0.0)
@@ -289,10 +329,18 @@ def spread_feet(joints_m: Joints, wider_m: float) -> Joints:
 
 
 def lingering(time_s: np.ndarray, joints_m: Joints, linger: float) -> np.ndarray:
-    """Times (time,) of a movement on the spot that is slow near the pose it begins in, and faster far from it.
+    """Warps the times of a movement in place: slow near its initial pose, faster far from it.
 
-    The tempo at the far end is 1 + `linger` times that at the near end; the whole lasts as long. Movements of less than
-    3 cm (rms over joints) keep their times.
+    The tempo at the far end is 1 + `linger` times that at the near end; the duration is unchanged. Movements of less
+    than 3 cm (rms over joints) keep their times.
+
+    Args:
+        time_s: Times (time,) in seconds.
+        joints_m: Joints (time, 22, 3) in metres.
+        linger: Additional relative tempo at the far end.
+
+    Returns:
+        Warped times (time,) in seconds.
     """
     local = joints_m - joints_m[:, :1] * (1.0, 1.0, 0.0)
     far_m = np.sqrt(((local - local[0]) ** 2).sum(axis=-1).mean(axis=-1))
@@ -305,9 +353,17 @@ def lingering(time_s: np.ndarray, joints_m: Joints, linger: float) -> np.ndarray
 
 
 def slow_at_turns(time_s: np.ndarray, joints_m: Joints, slower: float) -> np.ndarray:
-    """Times (time,) of a way on which whoever stands takes 1 + `slower` times as long, and who walks as long as before.
+    """Warps the times of a walk: standing takes 1 + `slower` times as long, walking as long as before.
 
-    In between in proportion to the speed of the pelvis, relative to that which three quarters of the time it is below.
+    In between the factor depends on the speed of the pelvis relative to its upper quartile.
+
+    Args:
+        time_s: Times (time,) in seconds.
+        joints_m: Joints (time, 22, 3) in metres.
+        slower: Additional relative duration of standing.
+
+    Returns:
+        Warped times (time,) in seconds.
     """
     step_m = np.linalg.norm(np.gradient(joints_m[:, joint("pelvis"), :2], axis=0), axis=-1)
     speed_mps = step_m / np.gradient(time_s)

@@ -45,7 +45,7 @@ TABLES: dict[str, dict[str, tuple[float, float] | None]] = {
     "mount": {"height_m": (0.0, 5.0), "tilt_deg": (-90.0, 90.0), "distance_m": (0.2, 20.0)},
     "recordings": {"columns": None, "frame_rate_hz": (0.5, 200.0), "gap_frames": (0.0, 1e6)},
 }
-# Words in names of columns: our axis (right, ahead, up) and sign.
+# Words in names of columns: axis (right, ahead, up) and sign.
 DIRECTIONS = {"right": (0, 1), "left": (0, -1), "ahead": (1, 1), "up": (2, 1), "down": (2, -1)}
 VELOCITIES = {"velocity": 1, "velocity_away": 1, "velocity_towards": -1}
 STRENGTHS = ("snr", "snr_db")
@@ -54,17 +54,25 @@ AXES = ("right or left", "ahead", "up or down")
 
 @dataclass(frozen=True, kw_only=True)
 class RecordedColumns:
-    """Which column of a stored point cloud is what.
+    """Meaning of the columns of a stored point cloud.
 
-    "x_right", "x_ahead", "y_left", "z_up": a direction; "velocity" (away +) or "velocity_towards"; "snr". Other names
-    stand for columns that are not read.
+    "x_right", "x_ahead", "y_left", "z_up" are directions; "velocity" (away +) or "velocity_towards"; "snr". Columns of
+    other names are ignored.
     """
 
     names: tuple[str, ...]
 
     @staticmethod
     def of(names: object, place: str) -> "RecordedColumns":
-        """Checks names of columns. Raises InputError where a direction or the velocity is missing or named twice."""
+        """Checks names of columns.
+
+        Args:
+            names: Value of the task file.
+            place: Where it comes from, for the error.
+
+        Raises:
+            InputError: If a direction or the velocity is missing or occurs twice.
+        """
         if not isinstance(names, Sequence) or isinstance(names, str) or not all(isinstance(one, str) for one in names):
             raise InputError(f'{place}: columns must be a list such as ["x_right", "y_ahead", "z_up", "velocity"]')
         found = RecordedColumns(names=tuple(map(str, names)))
@@ -82,7 +90,16 @@ class RecordedColumns:
         return [(column, *DIRECTIONS[word]) for column, word in enumerate(words) if word in DIRECTIONS]
 
     def cloud(self, frame: np.ndarray, pts: np.ndarray, place: str) -> PointCloud:
-        """The points of frames (point,) and columns (point, column). Raises InputError for another number of them."""
+        """The points of a stored cloud.
+
+        Args:
+            frame: Frame numbers (point,).
+            pts: Values (point, column).
+            place: Where they come from, for the error.
+
+        Raises:
+            InputError: If the number of columns differs.
+        """
         if pts.ndim != 2 or pts.shape[1] != len(self.names):
             raise InputError(f"{place}: pts is {pts.shape}, but {len(self.names)} columns are named")
         xyz = np.zeros((3, len(pts)))
@@ -99,7 +116,7 @@ class RecordedColumns:
 
 @dataclass(frozen=True, kw_only=True)
 class Mount:
-    """Where the radar stands; None = unknown."""
+    """Position of the radar; None where unknown."""
 
     height_m: float | None = None  # above the floor
     tilt_deg: float | None = None  # downwards
@@ -108,29 +125,29 @@ class Mount:
 
 @dataclass(frozen=True, kw_only=True)
 class RecordingSettings:
-    """How recordings are read and cut into windows, generated ones as real ones."""
+    """How recordings are read and cut into windows, generated and real ones alike."""
 
     labels: tuple[str, ...]  # in alphabetical order
     window_s: float
     frame_rate_hz: float
-    gap_frames: int | None = None  # more frames without points end a sample; None: recordings are never cut
-    columns: RecordedColumns | None = None  # of pts in .npz recordings; None: as `read_points` finds
-    empty_label: str | None = None  # of an empty place, the sentence `nobody`; None: no label is
+    gap_frames: int | None = None  # more frames without points end a sample; None never splits recordings
+    columns: RecordedColumns | None = None  # of pts in .npz recordings; None lets `read_points` decide
+    empty_label: str | None = None  # label of the empty room (the sentence `nobody`), if there is one
 
     @property
     def window_frames(self) -> int:
-        """Frames in a window."""
+        """Frames per window."""
         return max(round(self.window_s * self.frame_rate_hz), 1)
 
     @property
     def has_single_performances(self) -> bool:
-        """Whether a sample is one performance: even a pause shorter than a window ends it."""
+        """Whether a sample is a single performance: then even a pause shorter than a window ends it."""
         return self.gap_frames is not None and self.gap_frames <= self.window_frames
 
 
 @dataclass(frozen=True, kw_only=True)
 class RecognitionTask:
-    """What is to be recognised with which radar; everything else the project chooses."""
+    """Activities to be recognised, and the radar; everything else has defaults."""
 
     radar: RadarConfig  # at the frame rate of the recordings
     firmware: FirmwareSettings
@@ -142,9 +159,13 @@ class RecognitionTask:
 
 
 def read_task(file: Path | str) -> RecognitionTask:
-    """Reads a task file; paths in it count from its folder.
+    """Reads a task file; paths in it are relative to its folder.
 
-    Raises InputError for what is missing, unknown or impossible.
+    Args:
+        file: The task as TOML.
+
+    Raises:
+        InputError: For missing, unknown or impossible entries.
     """
     file = Path(file)
     content = _checked(read_toml(file), "", file)

@@ -1,4 +1,4 @@
-"""From a task file to a pose network: people perform its sentences in front of its radar; their joints are known."""
+"""Training of a pose network from a task file: people perform its sentences in front of its radar; joints are known."""
 
 import hashlib
 from collections.abc import Callable, Sequence
@@ -21,8 +21,8 @@ from mmweaver.training.trainer import Listener, Trainer
 
 SEQUENCES, SEQUENCE_FOLDER = 40, "sequences"
 HELD_OUT = 8  # one person in so many
-# Amplitudes of the motion library; those of recognisers are smaller, but joints are learned here.
-# Feet: people stand and squat with their heels 0.2 to 0.5 m apart; the library's are always close.
+# Amplitudes are those of the motion library, since joints are learned here; for recognisers they are smaller.
+# Feet: people stand and squat with their heels 0.2 to 0.5 m apart; in the library they are always close.
 POSE_PRIOR = PerformancePrior(
     usual_amplitude=1.0,
     amplitude_of_person=0.1,
@@ -36,7 +36,7 @@ POSE_PRIOR = PerformancePrior(
 
 @dataclass(frozen=True, kw_only=True)
 class PoseTraining:
-    """How a pose network is trained; the same for every task."""
+    """Training of a pose network; the same for every task."""
 
     sequences: int = SEQUENCES  # people who do each activity
     networks: int = 2  # trained one after the other on the same people; their poses are averaged
@@ -48,7 +48,7 @@ class PoseTraining:
 
 
 def posed_frames(recording: PointRecording) -> PosedFrames:
-    """A recording with joints as the network reads it; joints are interpolated where they were not measured."""
+    """A recording with joints as network input; joints of unmeasured frames are interpolated."""
     assert recording.joints_m is not None, "a recording with joints"
     joints_m = recording.joints_m.copy()
     measured = np.flatnonzero(np.isfinite(joints_m).all(axis=(1, 2)))
@@ -58,7 +58,7 @@ def posed_frames(recording: PointRecording) -> PosedFrames:
 
 
 def _recipe(task: RecognitionTask, seed: int) -> SequenceRecipe:
-    """Before boards at usual heights: what high ones would do to poses was not measured."""
+    """The recipe with boards at typical heights; the effect of high mounts on poses has not been measured."""
     own = SequenceRecipe.of(task, POSE_PRIOR, seed)
     return replace(own, variation=replace(own.variation, high_share=0.0))
 
@@ -70,7 +70,18 @@ def generated_frames(
     folder: Path | None,
     listener: Callable[[int, int], object] | None = None,
 ) -> list[PointRecording]:
-    """Sequences of a task with joints; one after the other, all activities of a person in turn."""
+    """Sequences of a task with joints, person by person.
+
+    Args:
+        task: The task.
+        sequences: Number of people.
+        seed: Seed of everything that is sampled.
+        folder: Folder for the sequences, None to keep them in memory.
+        listener: Called with the number of finished sequences and the total.
+
+    Raises:
+        InputError: If no activity has a person in it.
+    """
     everything = generate_sequences(_recipe(task, seed), sequences, folder, listener)
     posed = [one for one in everything if one.joints_m is not None]
     if not posed:
@@ -103,11 +114,23 @@ def train_pose_of_task(
     listener: Listener | None = None,
     **options: Any,
 ) -> tuple[list[Path], list[Trainer[PoseLearner]]]:
-    """Trains pose networks on people who carry out the sentences of a task; writes `out`/weights.safetensors, weights_2
-    and so on.
+    """Trains pose networks on people who perform the sentences of a task.
 
-    Sequences stay in `out`/sequences, so a run may be interrupted. `tell` hears how many sequences are done, `listener`
-    of each step. Raises InputError.
+    Sequences are stored in `out`/sequences, so a run can be resumed.
+
+    Args:
+        task_file: The task as TOML.
+        out: Folder for weights.safetensors, weights_2.safetensors and so on.
+        training: How networks are trained; by default `PoseTraining()`.
+        tell: Called with the number of finished sequences and the total.
+        listener: Called after each training step.
+        **options: Further arguments of `train_pose`.
+
+    Returns:
+        Weight files and trainers, one per network.
+
+    Raises:
+        InputError: For a task or a folder that cannot be used.
     """
     training, out, task = training or PoseTraining(), Path(out), read_task(task_file)
     recipe = training.recipe
@@ -126,7 +149,17 @@ def train_pose_of_task(
 
 
 def write_pose_weights(file: Path, task: RecognitionTask, trainer: Trainer[PoseLearner], people_seed: int) -> Path:
-    """Writes the best network with what one must know to apply it."""
+    """Writes the best network, with the settings that are needed to apply it.
+
+    Args:
+        file: The weight file.
+        task: The task, for its recordings and radar.
+        trainer: The finished training.
+        people_seed: Seed of the generated people.
+
+    Returns:
+        The file.
+    """
     columns = task.recordings.columns
     settings = {
         "window_s": float(task.recordings.window_s),

@@ -1,4 +1,4 @@
-"""From a task file to a recogniser: sequences, windows, disturbed copies, features, trees, and what to expect of it."""
+"""Training of a recogniser from a task file: sequences, windows, copies, features, trees and expected accuracy."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -38,7 +38,7 @@ from mmweaver.recognition.tree_ensemble import joined_trees
 from mmweaver.recognition.window_features import moving_points
 
 QUICK_SEQUENCES = 8  # people per activity
-SINGLE_SEQUENCES = 100  # of single performances, which give one window each
+SINGLE_SEQUENCES = 100  # for single performances, which give one window each
 SEQUENCE_FOLDER = "sequences"
 HELD_OUT = 4  # one person in so many is held out to test on generated people
 HELD_OUT_TREES = 100
@@ -53,14 +53,19 @@ def train_recogniser(
     listener: Listener | None = None,
     labelled: Path | str | None = None,
 ) -> Recogniser:
-    """Trains a recogniser of a task and writes its folder; sequences stay in OUT/sequences, so it may be interrupted.
+    """Trains the recogniser of a task and writes its folder.
+
+    Sequences are stored in OUT/sequences, so it can be resumed.
 
     Args:
         task_file: The task as TOML.
         out: Folder of the recogniser.
-        options: How it is trained; None takes the defaults.
-        listener: Called with a stage, what is done of it and how much there is.
-        labelled: Folder of recordings that train along, a folder per activity; not every activity needs one.
+        options: How it is trained; by default `TrainingOptions()`.
+        listener: Called with a stage, the amount done and the total.
+        labelled: Folder of recordings for training, a folder per activity; not every activity needs one.
+
+    Returns:
+        The recogniser.
 
     Raises:
         InputError: For a task, recordings or a folder that cannot be used.
@@ -113,7 +118,7 @@ def train_recogniser(
 
 
 def usual_sequences(task: RecognitionTask) -> int:
-    """How many people perform each activity by default."""
+    """Default number of people who perform each activity."""
     return SINGLE_SEQUENCES if task.recordings.has_single_performances else SEQUENCES
 
 
@@ -124,17 +129,17 @@ def fitted(
     options: TrainingOptions,
     labelled: Sequence[PointRecording] = (),
 ) -> Recogniser:
-    """Trees on all generated windows and the labelled ones, adapted to unlabelled ones.
+    """Trees grown on all generated windows and the labelled ones, adapted to unlabelled ones.
 
     Args:
         made: Generated windows with their copies.
-        unlabelled: Recorded windows whose activity is unknown; may be empty.
+        unlabelled: Recorded windows of unknown activity; may be empty.
         task: The task, for its labels and windows.
         options: How trees are grown.
         labelled: Recorded windows with their activity; not every activity needs one.
 
     Returns:
-        The recogniser, with the accuracy on generated people who were held out in `meta`.
+        The recogniser, with the accuracy on held-out generated people in `meta`.
     """
     generated = quantiles_of(made.features)
     outside_above = float(np.quantile(outside_share(made.features, generated), INSIDE_SHARE))
@@ -168,9 +173,14 @@ def fitted(
 
 
 def generated_accuracy(made: TrainingWindows, options: TrainingOptions) -> dict[str, Any]:
-    """Balanced accuracy on generated windows of people who were held out: what the radar can tell apart at best.
+    """Balanced accuracy on generated windows of held-out people: an upper bound of what the radar can discriminate.
 
-    `confusion`: true labels in rows, recognised ones in columns, in the order of the labels.
+    Args:
+        made: Generated windows with their copies.
+        options: How trees are grown.
+
+    Returns:
+        Accuracy, number of windows, chance level, and `confusion` (true labels in rows, recognised ones in columns).
     """
     held = made.person % HELD_OUT == HELD_OUT - 1
     if held.all() or not held.any():

@@ -1,4 +1,4 @@
-"""What the trees of a recogniser learn from: windows of generated sequences, with copies, labels and weights."""
+"""Training data of a recogniser's trees: windows of generated sequences, with copies, labels and weights."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -20,24 +20,24 @@ from mmweaver.recognition.tree_ensemble import Features, TreeEnsemble, grow_tree
 from mmweaver.recognition.window_augmentation import PerformanceVariation, WindowAugmentation, augmented, varied
 
 SEQUENCES = 40  # people per activity
-SNR_CUT_DB = 18.0  # of copies: how much less sensitive a board may be
-CROWDED_SHARE = 0.3  # of copies in front of a furnished room
-OVERLAP = 3  # windows of a generated sequence begin every so many parts of a window
+SNR_CUT_DB = 18.0  # of copies: maximum loss of sensitivity of a board
+CROWDED_SHARE = 0.3  # share of copies in a furnished room
+OVERLAP = 3  # windows of a generated sequence per window length
 
 
 @dataclass(frozen=True, kw_only=True)
 class TrainingOptions:
-    """How a recogniser is trained; the same for every task."""
+    """Training of a recogniser; the same for every task."""
 
     sequences: int = SEQUENCES
     seed: int = 0
     prior: PerformancePrior = PerformancePrior()  # noqa: RUF009 (frozen)
-    copies: int = 4  # varied and disturbed ones of each window
+    copies: int = 4  # augmented copies of each window
     variation: PerformanceVariation = PerformanceVariation()  # noqa: RUF009 (frozen)
     trees: int = 300
     leaf_size: int = 3
     feature_share: float = 0.15
-    labelled_weight: float = 25.0  # of labelled recordings, relative to what was generated
+    labelled_weight: float = 25.0  # of labelled recordings, relative to generated ones
 
     def __post_init__(self) -> None:
         if not 2 <= self.sequences <= 100_000:
@@ -48,15 +48,15 @@ class TrainingOptions:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TrainingWindows:
-    """Features of generated windows and of their disturbed copies; with them, perhaps, of recorded ones."""
+    """Features of generated windows and their augmented copies, possibly followed by recorded ones."""
 
     features: Features
     label: Int[np.ndarray, " window"]
     person: Int[np.ndarray, " window"]
     is_copy: Bool[np.ndarray, " window"]
     names: tuple[str, ...]
-    importance: Float[np.ndarray, " window"] | None = None  # None: all the same
-    points: WindowFilter = field(default_factory=WindowFilter)  # which of them count
+    importance: Float[np.ndarray, " window"] | None = None  # None for equal weights
+    points: WindowFilter = field(default_factory=WindowFilter)  # filter of their points
 
     @property
     def own_weights(self) -> Float[np.ndarray, " window"]:
@@ -64,14 +64,20 @@ class TrainingWindows:
 
     @property
     def weights(self) -> Float[np.ndarray, " window"]:
-        """Every label weighs the same."""
+        """Weights (window,), normalised so that all labels have the same total."""
         own = self.own_weights
         return own / np.bincount(self.label, own)[self.label] * len(self.label)
 
     def joined(
         self, features: Float[np.ndarray, "other feature"], labels: Int[np.ndarray, " other"], weight: float
     ) -> "TrainingWindows":
-        """These windows and recorded ones, which weigh `weight` times as much in each label."""
+        """These windows followed by recorded ones.
+
+        Args:
+            features: Features (other, feature) of the recorded windows.
+            labels: Their labels (other,).
+            weight: Their total weight relative to the generated windows, per label.
+        """
         classes = int(self.label.max()) + 1
         of_made, of_recorded = (
             np.bincount(self.label, self.own_weights, classes),
@@ -87,13 +93,26 @@ class TrainingWindows:
         )
 
     def trees(self, options: TrainingOptions, which: Bool[np.ndarray, " window"] | None = None) -> TreeEnsemble:
-        """Trees on all windows, or on those of a mask."""
+        """Trees grown on all windows, or on a subset.
+
+        Args:
+            options: How trees are grown.
+            which: Mask (window,) of the subset.
+        """
         return self.weighed_trees(options, which)[0]
 
     def weighed_trees(
         self, options: TrainingOptions, which: Bool[np.ndarray, " window"] | None = None
     ) -> tuple[TreeEnsemble, Float[np.ndarray, " feature"]]:
-        """Trees, and the importance of each feature to them."""
+        """Trees with the importance of each feature.
+
+        Args:
+            options: How trees are grown.
+            which: Mask (window,) of the windows to use; by default all.
+
+        Returns:
+            The trees, and the importance (feature,).
+        """
         which = np.ones(len(self.label), bool) if which is None else which
         return grow_trees(
             self.features[which],
@@ -114,20 +133,20 @@ def generated_windows(
     background: Sequence[PointRecording] = (),
     persistent: Cells = NO_CELLS,
 ) -> TrainingWindows:
-    """Windows of sequences with their disturbed copies, each in front of the recorded background where there is one.
+    """Windows of sequences with their augmented copies, with the recorded background where there is one.
 
     Args:
         sequences: Generated recordings of the task.
         task: Radar, firmware, and how windows are cut.
         options: Number of copies, their variation, and the seed.
-        background: Recordings of the empty place.
-        persistent: Cells whose moving points are left out, as those of the background are.
+        background: Recordings of the empty room.
+        persistent: Cells whose moving points are removed, like those of the background.
 
     Returns:
         Features of the windows, followed by those of the first copy of each, the second, and so on.
 
     Raises:
-        InputError: Where an activity gave no window.
+        InputError: If an activity gave no window.
     """
     shows_room, once = not (task.firmware.static_removal or background), task.recordings.has_single_performances
     how = WindowAugmentation(
@@ -172,7 +191,7 @@ def generated_windows(
 def _add_background(
     background: Sequence[PointRecording], window: PointRecording, rng: np.random.Generator
 ) -> PointRecording:
-    """The window with the points of a stretch of the recorded empty place."""
+    """The window with the points of a part of the recorded empty room."""
     if not background:
         return window
     place = background[int(rng.integers(len(background)))]

@@ -20,7 +20,7 @@ Features = Float[np.ndarray, "window feature"]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TreeEnsemble:
-    """All nodes of all trees in one row; leaves lead to themselves. Votes are shares of the training windows."""
+    """All nodes of all trees in one array; leaves point to themselves. Votes are shares of the training windows."""
 
     root: Int[np.ndarray, " tree"]
     left: Int[np.ndarray, " node"]
@@ -31,7 +31,14 @@ class TreeEnsemble:
     votes: Float[np.ndarray, "node activity"]
 
     def probabilities(self, features: Features) -> Float[np.ndarray, "window activity"]:
-        """Mean vote of all trees, (window, activity)."""
+        """Mean vote of all trees.
+
+        Args:
+            features: Features (window, feature), nan where unknown.
+
+        Returns:
+            Votes (window, activity).
+        """
         features = np.asarray(features, np.float32)
         rows = np.arange(len(features))[:, None]
         node = np.broadcast_to(self.root, (len(features), len(self.root))).copy()
@@ -56,9 +63,23 @@ def grow_trees(
     feature_share: float,
     seed: int,
 ) -> tuple[TreeEnsemble, Float[np.ndarray, " feature"]]:
-    """Trains on features (window, feature), nan = unknown; with the importance of each: impurity its splits take away.
+    """Grows extremely randomised trees.
 
-    Raises InputError where scikit-learn is missing.
+    Args:
+        features: Features (window, feature), nan where unknown.
+        labels: Labels (window,).
+        weights: Weights (window,).
+        classes: Number of labels.
+        trees: Number of trees.
+        leaf_size: Minimum number of windows per leaf.
+        feature_share: Share of the features considered at each split.
+        seed: Random seed.
+
+    Returns:
+        The trees, and the importance (feature,) of each feature: the impurity that its splits remove.
+
+    Raises:
+        InputError: If scikit-learn is missing.
     """
     need("evaluate", "training a recogniser", "sklearn")
     from sklearn.ensemble import ExtraTreesClassifier
@@ -94,7 +115,7 @@ def grow_trees(
 
 
 def joined_trees(one: TreeEnsemble, other: TreeEnsemble | None) -> TreeEnsemble:
-    """The trees of both, each with the same vote."""
+    """The trees of both ensembles, with equal votes."""
     if other is None:
         return one
     start = len(one.left)
@@ -103,13 +124,27 @@ def joined_trees(one: TreeEnsemble, other: TreeEnsemble | None) -> TreeEnsemble:
 
 
 def write_trees(file: Path, ensemble: TreeEnsemble) -> None:
-    """One .npz of the arrays."""
+    """Writes the arrays of an ensemble.
+
+    Args:
+        file: The .npz.
+        ensemble: The trees.
+    """
     with atomic_file(file) as temporary, temporary.open("wb") as stream:
         np.savez_compressed(stream, **vars(ensemble))
 
 
 def read_trees(file: Path, features: int, classes: int) -> TreeEnsemble:
-    """Reads `write_trees`. Raises InputError where the arrays are no trees over so many features and classes."""
+    """Reads the file of `write_trees`.
+
+    Args:
+        file: The file.
+        features: Number of features.
+        classes: Number of labels.
+
+    Raises:
+        InputError: If the arrays are not trees over that many features and labels.
+    """
     held = read_npz(file)
     nodes = len(held.take("left"))
     if not 0 < nodes <= MAX_NODES:
@@ -127,7 +162,7 @@ def read_trees(file: Path, features: int, classes: int) -> TreeEnsemble:
         unknown_left=numbers("unknown_left", 1),
         votes=held.numbers("votes", ("node", classes), low=0, high=1),
     )
-    # children stand behind their parents, so that every way down ends
+    # children follow their parents, so every descent ends
     here = np.arange(nodes)
     if (found.left < here).any() or (found.right < here).any():
         raise InputError(f"{file} holds trees that lead back to themselves; train the recogniser again")

@@ -1,6 +1,6 @@
-"""Copies of generated windows: other performances of the same motion, and what worse boards in worse rooms report.
+"""Copies of generated windows: other performances of the same motion, as reported by worse boards in worse rooms.
 
-`varied` changes pace, extent, place and what is seen of a motion; neither order nor sides change. `augmented` drops
+`varied` changes tempo, extent, position and visibility of a motion; neither order nor sides change. `augmented` drops
 points and adds clutter and false alarms: which weak points a real board reports (thresholds, antennas, cables,
 furniture) is unknown beforehand. A copy costs a hundredth of a simulated performance.
 """
@@ -15,11 +15,11 @@ from mmweaver.recognition.point_recordings import STILL_MPS, PointRecording, ind
 from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.window_features import SPEED_EDGES_MPS
 
-BRISK_STEPS = 1.1  # velocities above so many steps of the radar are those of limbs
-FEWEST = 10  # brisk points of a motion that may be seen in part
+BRISK_STEPS = 1.1  # velocity of limbs, minimum in steps of the radar
+FEWEST = 10  # minimum number of brisk points of a motion that may be partly hidden
 NEAREST_M = 0.3
 FARTHEST_M, ASIDE_RAD = 9.0, 1.1  # of static cells in a furnished room
-DETECTED = (1.0, 0.98, 0.9, 0.6, 0.3, 0.1)  # shares of frames in which static objects are
+DETECTED = (1.0, 0.98, 0.9, 0.6, 0.3, 0.1)  # shares of frames in which static objects are detected
 
 Values = np.ndarray | float
 Points = tuple[np.ndarray, np.ndarray]  # frame (point,), columns (point, 4): x, y, z, radial velocity
@@ -27,13 +27,17 @@ Points = tuple[np.ndarray, np.ndarray]  # frame (point,), columns (point, 4): x,
 
 @dataclass(frozen=True, kw_only=True)
 class PerformanceVariation:
-    """Limits of what differs between a generated window and its copy; each copy samples its own values.
+    """Limits of the difference between a generated window and its copy; each copy samples its own values.
 
-    `tempo` and `size`: standard deviations of the logarithm of the pace and of the extent of the moving points about
-    their median. `shift_m`: the largest change of range. `turn_rad`: standard deviation of the change of azimuth.
-    `cut_share`: of the copies of single performances, those of which the beginning or the end is missing, up to
-    `most_cut` of the motion. `hidden_share`: of the copies, those in which a limb returns little in a part of its way
-    (the earlier or later, the higher or lower, or approaching or receding).
+    Attributes:
+        tempo: Standard deviation of the logarithm of the tempo.
+        size: Standard deviation of the logarithm of the extent of the moving points around their median.
+        shift_m: Maximum change of range.
+        turn_rad: Standard deviation of the change of azimuth.
+        cut_share: Share of the copies of single performances whose beginning or end is missing.
+        most_cut: Maximum missing share of the motion.
+        hidden_share: Share of the copies in which a limb returns little in a part of its path (the earlier or later,
+            the higher or lower, or approaching or receding).
     """
 
     tempo: float = 0.2
@@ -53,9 +57,9 @@ class WindowAugmentation:
     some points of the slowest velocity are reported as static. Up to `most_objects` static objects add up to three
     neighbouring range cells each, detected always or intermittently, and in `crowded_share` of the copies up to
     `most_crowded` single cells all around; `false_points` is the largest mean number of moving false alarms. Points
-    less than up to `snr_cut_db` above the weakest are dropped, as a less sensitive radar drops them. `reversed_share`
-    of the copies are reversed in time (with the sign of velocity), `reflected_share` are reflected left-right: by
-    default half, 0 where order or sides matter.
+    within up to `snr_cut_db` of the weakest are dropped, as by a less sensitive radar. `reversed_share` of the copies
+    are reversed in time (with the sign of velocity), `reflected_share` are reflected left-right: by default half, 0
+    where order or sides matter.
     """
 
     least_moving: float = 0.35
@@ -85,13 +89,21 @@ def varied(
     *,
     once: bool,
 ) -> PointRecording:
-    """`num_frames` frames of `source`, beginning about frame `first`, of another performance of the same motion.
+    """Another performance of the same motion.
 
-    Frames beyond the end of `source` are empty. Velocities stay multiples of the radar's step, below its largest.
-    `once`: `source` is a single performance, which copies may cut.
+    Velocities remain multiples of the radar's step, below its maximum.
+
+    Args:
+        source: The recording.
+        first: Approximate first frame.
+        num_frames: Number of frames; those beyond the end of `source` are empty.
+        rng: Random stream.
+        radar: Steps of range and velocity.
+        how: Limits of the variation.
+        once: Whether `source` is a single performance, which copies may cut.
     """
     pace = float(np.exp(how.tempo * rng.normal()))
-    if not once:  # what goes on has no end: no copy reads beyond it
+    if not once:  # a continuing activity has no end, so no copy reads beyond the recording
         first = max(min(first, int(source.num_frames - num_frames * pace)), 0)
         pace = min(pace, source.num_frames / num_frames)
     cloud = _frames(source.cloud, first + np.floor(np.arange(num_frames) * pace).astype(int))
@@ -104,7 +116,7 @@ def varied(
 
 
 def _frames(cloud: PointCloud, wanted: np.ndarray) -> PointCloud:
-    """The points of these frames (frame,), which do not fall, as frames 0, 1, ..."""
+    """The points of selected frames (frame,), in ascending order, renumbered 0, 1, ..."""
     frame, place = index_runs(np.searchsorted(cloud.frame, wanted), np.searchsorted(cloud.frame, wanted, side="right"))
     return replace(cloud.select(place), frame=frame)
 
@@ -114,7 +126,7 @@ def _brisk(cloud: PointCloud, radar: Quantisation) -> Bool[np.ndarray, " point"]
 
 
 def _cut(cloud: PointCloud, rng: np.random.Generator, radar: Quantisation, how: PerformanceVariation) -> PointCloud:
-    """Without the beginning or the end of its motion, as recordings are cut; time counts from the first point."""
+    """Removes the beginning or the end of a motion, as recordings are cut; time counts from the first point."""
     brisk = _brisk(cloud, radar)
     if rng.random() > how.cut_share or brisk.sum() < FEWEST:
         return cloud
@@ -127,7 +139,7 @@ def _cut(cloud: PointCloud, rng: np.random.Generator, radar: Quantisation, how: 
 def _partly_hidden(
     cloud: PointCloud, rng: np.random.Generator, radar: Quantisation, how: PerformanceVariation
 ) -> PointCloud:
-    """Without most of the brisk points of one part of the way: skin reflects like a mirror, and limbs turn."""
+    """Removes most of the brisk points of one part of the path: skin reflects specularly, and limbs turn."""
     brisk = _brisk(cloud, radar)
     if rng.random() > how.hidden_share or brisk.sum() < FEWEST:
         return cloud
@@ -137,7 +149,7 @@ def _partly_hidden(
 
 
 def _resized(cloud: PointCloud, size: float, pace: float, radar: Quantisation) -> PointCloud:
-    """Moving points `size` times as far from their median, all velocities as much and `pace` times as fast."""
+    """Scales moving points about their median by `size`, and velocities by `size` and `pace`."""
     moving = is_moving(cloud)
     if not moving.any():
         return cloud
@@ -152,7 +164,7 @@ def _resized(cloud: PointCloud, size: float, pace: float, radar: Quantisation) -
 
 
 def _elsewhere(cloud: PointCloud, farther_m: float, turn_rad: float) -> PointCloud:
-    """All points farther away and turned about the radar."""
+    """Moves all points in range, and rotates them about the radar."""
     range_m = cloud.range_m
     scale = np.maximum(range_m + farther_m, NEAREST_M) / np.maximum(range_m, 1e-6)
     cos, sin = np.cos(turn_rad), np.sin(turn_rad)
@@ -164,7 +176,13 @@ def _elsewhere(cloud: PointCloud, farther_m: float, turn_rad: float) -> PointClo
 def augmented(
     window: PointRecording, rng: np.random.Generator, how: WindowAugmentation | None = None
 ) -> PointRecording:
-    """One augmented copy of a window; `snr_db` becomes nan."""
+    """One augmented copy of a window; `snr_db` becomes nan.
+
+    Args:
+        window: Points of one window.
+        rng: Random stream.
+        how: Limits of the augmentation; by default `WindowAugmentation()`.
+    """
     how = how or WindowAugmentation()
     cloud, frames = window.cloud, window.num_frames
     if how.snr_cut_db and np.isfinite(cloud.snr_db).any():
@@ -198,7 +216,7 @@ def _thinned(
 
 
 def _reversed(points: Points, frames: int, how: WindowAugmentation, rng: np.random.Generator) -> Points:
-    """Reverses time and reflects left-right, each in its share of copies."""
+    """Reverses time and reflects left-right, each in its share of the copies."""
     frame, columns = points
     backwards, reflected = rng.random(2) < (how.reversed_share, how.reflected_share)
     columns = columns * np.array([-1.0 if reflected else 1.0, 1.0, 1.0, -1.0 if backwards else 1.0])

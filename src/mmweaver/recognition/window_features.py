@@ -16,11 +16,11 @@ from mmweaver.recognition.point_recordings import PointRecording, is_moving
 SPEED_EDGES_MPS = (0.1, 0.9, 1.5, 2.2, 3.2, 99.0)  # of one, two, three, four and five, and more bins of 0.615 m/s
 BANDS_HZ = ((0.3, 0.8), (0.8, 1.3), (1.3, 1.8), (1.8, 2.3), (2.3, 3.3), (3.3, 5.3), (5.3, 10.0))
 SEGMENTS = 4
-FEWEST = 3  # points for a spread, or for a position
+FEWEST = 3  # minimum number of points for a spread, or for a position
 UNPREDICTABLE = {"up", "uneven"}  # words in names of features that are excluded by default
 CELL_M, FARTHEST_M = 0.05, 6.0  # range cells of static points
-FIXED, SELDOM = 0.9, 0.03  # shares of frames: from which a cell counts as the room, up to which it is left out
-REACH_M = 0.7  # extent of a body about its centre
+FIXED, SELDOM = 0.9, 0.03  # shares of frames from which a cell belongs to the room, and up to which it is ignored
+REACH_M = 0.7  # extent of a body around its centre
 BODY_SEGMENTS = 8
 
 Row = dict[str, Any]  # numbers by name
@@ -45,12 +45,12 @@ def moving_points(window: PointRecording) -> float:
 
 
 def mean_of(values: np.ndarray) -> float:
-    """The mean, nan of none."""
+    """Mean value, nan without values."""
     return float(values.mean()) if len(values) else np.nan
 
 
 def correlation(one: np.ndarray, other: np.ndarray) -> float:
-    """The correlation coefficient, nan where one does not vary."""
+    """Correlation coefficient, nan where one does not vary."""
     if one.std() < 1e-9 or other.std() < 1e-9:
         return np.nan
     return float(np.corrcoef(one, other)[0, 1])
@@ -136,7 +136,7 @@ def _places(points: PointRecording) -> Row:
 
 
 def _difference(one: np.ndarray, other: np.ndarray) -> float:
-    """Difference of the means, nan of too few."""
+    """Difference of the means, nan with too few values."""
     return float(one.mean() - other.mean()) if min(len(one), len(other)) >= FEWEST else np.nan
 
 
@@ -225,10 +225,10 @@ def _band_shares(power: np.ndarray, frequency_hz: np.ndarray, word: str) -> Row:
 
 # nearly stationary bodies -------------------------------------------------------------------------------------------
 def body_features(window: PointRecording) -> Row:
-    """Named features of nearly stationary bodies: static points that come and go, and the body's position over time.
+    """Named features of nearly stationary bodies: intermittent static points, and the body's position over time.
 
     Slow motion has zero velocity for a radar of coarse resolution: squats look like a static spot that shifts by 20 cm
-    and back, hops like one that flickers twice per second. Range cells that are nearly always occupied count as the
+    and back, hops like one that flickers twice per second. Range cells that are nearly always occupied belong to the
     room, and so does everything beyond a body's extent from the median range of change.
     """
     cloud, frames, moves = window.cloud, window.num_frames, is_moving(window.cloud)
@@ -254,7 +254,7 @@ def body_features(window: PointRecording) -> Row:
 
 
 def _flicker(cells: Float[np.ndarray, "frame cell"], static: float, rate_hz: float) -> Row:
-    """Rhythm in which static cells, 1 where they have a point, fill and empty, individually and jointly."""
+    """Rhythm in which static cells, 1 where they have a point, become filled and empty, individually and jointly."""
     frames = len(cells)
     frequency_hz = np.fft.rfftfreq(4 * frames, 1 / rate_hz)
     centred = cells - cells.mean(axis=0)

@@ -241,7 +241,15 @@ def decoded(values: Any, config: RadarConfig) -> Any:
 
 
 def encoded(values: Any, config: RadarConfig) -> Any:
-    """The inverse of `decoded`, in the least-squares sense where there are more slots than transmitters."""
+    """The inverse of `decoded`, in the least-squares sense where there are more slots than transmitters.
+
+    Args:
+        values: Values (..., antenna), an array or a tensor.
+        config: The radar; those of a TDM radar are returned unchanged.
+
+    Returns:
+        Values (..., slot * rx).
+    """
     return _through(np.linalg.pinv(config.tx_decoder), values, config) if config.is_coded else values
 
 

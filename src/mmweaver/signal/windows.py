@@ -21,7 +21,12 @@ def doppler_window_middle(num_loops: int) -> float:
 
 
 def noise_share(num_samples: int, num_loops: int) -> float:
-    """Noise power per cell of the cube, for white noise of unit power per sample, after both normalised windows."""
+    """Noise power per cell of the cube, for white noise of unit power per sample, after both normalised windows.
+
+    Args:
+        num_samples: Samples per chirp.
+        num_loops: Loops per frame.
+    """
     windows = hann(num_samples), doppler_window(num_loops)
     return float(np.prod([(window**2).sum() / window.sum() ** 2 for window in windows]))
 

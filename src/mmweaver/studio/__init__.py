@@ -1,1 +1,1 @@
-"""The studio: a page in the browser on which radar data is made, watched, compared and exported."""
+"""The studio: a page in the browser to generate, play, compare and export radar data."""

@@ -1,4 +1,4 @@
-"""What the studio exports: the same files as the command line writes for the same request."""
+"""Exports of the studio: the same files as the command line writes for the same request."""
 
 import shutil
 from collections.abc import Callable
@@ -48,7 +48,7 @@ def _folder(result: Result, folder: Path) -> Path:
 
 
 def _samples(result: Result, folder: Path) -> Path:
-    """The result folder with its samples, for which the same request is generated again: a cube is kept without."""
+    """The result folder with its samples, for which the same request is generated again: results are kept without."""
     if result.with_samples is None:
         raise InputError("only what the studio generated has samples; generate a sequence first")
     result.with_samples().save(folder / "result", adc_data_bin=True, pictures=False)
@@ -82,7 +82,18 @@ EXPORTS: dict[str, tuple[str, Export]] = {
 
 
 def export(result: Result, kind: str) -> tuple[str, bytes]:
-    """The name and the bytes of a result in one of the formats of `EXPORTS`. Raises InputError for another."""
+    """Exports a result.
+
+    Args:
+        result: The result.
+        kind: Format, a key of `EXPORTS`.
+
+    Returns:
+        Name and bytes of the file.
+
+    Raises:
+        InputError: For an unknown format.
+    """
     if kind not in EXPORTS:
         raise InputError(f"unknown format {kind!r}; known: {', '.join(EXPORTS)}")
     with TemporaryDirectory(prefix="mmweaver-export-") as folder:

@@ -1,4 +1,4 @@
-"""The studio's queue: first come, first served, one worker per core; a job whose tab is closed is dropped."""
+"""Queue of the studio: first come, first served, one worker per core; a job whose tab is closed is dropped."""
 
 import asyncio
 import os
@@ -16,7 +16,7 @@ class BusyError(Exception):
 
 
 class Jobs:
-    """Threads that share rooms and weights; the arithmetic in them releases Python's lock."""
+    """Threads that share rooms and weights; their computations release the GIL."""
 
     def __init__(self, workers: int | None = None):
         self.workers = workers or max(1, len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 2)
@@ -24,10 +24,18 @@ class Jobs:
         self.waiting = 0
 
     async def run(self, work: Callable[[], T], gone: Callable[[], Awaitable[bool]] | None = None) -> T:
-        """The result of `work`, run by the next free worker in the order of asking.
+        """Runs a job on the next free worker, in order of arrival.
 
-        `gone` is asked now and then whether the client has left; then a waiting job is dropped and
-        asyncio.CancelledError raised. Raises BusyError where too many wait.
+        Args:
+            work: The job.
+            gone: Polled for whether the client has left; then a waiting job is dropped.
+
+        Returns:
+            The result of the job.
+
+        Raises:
+            BusyError: If too many jobs are waiting.
+            asyncio.CancelledError: If the client has left.
         """
         if self.waiting >= MAX_WAITING:
             raise BusyError
@@ -50,5 +58,5 @@ class Jobs:
         return self._pool.submit(work)
 
     def stop(self) -> None:
-        """Drops what waits; a job under way ends by itself."""
+        """Drops waiting jobs; a running job finishes on its own."""
         self._pool.shutdown(wait=False, cancel_futures=True)

@@ -1,4 +1,4 @@
-"""Live: chunks of a stream, made while the visitor types; a rolling picture of the last seconds in the browser."""
+"""Live mode: chunks of a stream, generated while the visitor types, for a rolling picture in the browser."""
 
 from collections import deque
 from collections.abc import Iterator
@@ -22,7 +22,7 @@ CHUNK_FRAMES = 10
 
 
 class Live:
-    """One stream of one session. `next_chunk` is called for each chunk; `say` hands in the next sentence."""
+    """One stream of one session. `next_chunk` is called for each chunk; `say` adds the next sentence."""
 
     def __init__(
         self,
@@ -51,7 +51,7 @@ class Live:
         self._seconds = 0.0
 
     def say(self, text: str) -> None:
-        """The sentence to go on with when the present one is done."""
+        """Adds the sentence that follows the current one."""
         self._sentences.append(text)
 
     def _next_sentence(self) -> Iterator[str | None]:
@@ -59,9 +59,10 @@ class Live:
             yield self._sentences.popleft() if self._sentences else None
 
     def next_chunk(self) -> bytes:
-        """The next chunk, packed for the page, with how many times faster than real time it was made.
+        """The next chunk, packed for the page, with its speed relative to real time.
 
-        Raises InputError where the first sentence cannot be carried out.
+        Raises:
+            InputError: If the first sentence cannot be carried out.
         """
         begun = perf_counter()
         chunk = next(self._chunks)
@@ -86,16 +87,21 @@ class Live:
 
 
 class LiveLabels:
-    """The label of the last complete window of a stream, by a recogniser of `mmweaver recognise train`."""
+    """Labels of the last complete window of a stream, by a recogniser of `mmweaver recognise train`."""
 
     def __init__(self, model: Recogniser):
         self._live = LiveRecogniser(model)
         self._last: dict[str, Any] | None = None
 
     def push(self, chunk: StreamChunk) -> dict[str, Any] | None:
-        """Takes a chunk's frames; label, its share of the votes, and whether its window is unlike all that is known.
+        """Takes a chunk's frames.
 
-        None before the first window is complete.
+        Args:
+            chunk: The chunk.
+
+        Returns:
+            Label, its share of the votes, and whether its window is out of distribution; None before the first complete
+            window.
         """
         points = chunk.points
         columns = (points.x_m, points.y_m, points.z_m, points.radial_velocity_mps, points.snr_db)

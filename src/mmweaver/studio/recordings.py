@@ -1,4 +1,4 @@
-"""Recordings and results in files and folders: those that the command line offers, and those that a session brought."""
+"""Recordings and results in files and folders: those offered by the command line, and those uploaded to a session."""
 
 from pathlib import Path
 
@@ -15,12 +15,16 @@ from mmweaver.studio.sessions import Result
 
 PORT_LOG_PERIOD_S = 0.1  # of a data port's log without its .cfg
 SETTINGS = (".cfg", ".json")
-ALONE = (".dat", ".npy", ".npz")  # files that can be read without a .cfg
+ALONE = (".dat", ".npy", ".npz")  # files that are readable without a .cfg
 NONE_FOUND = "holds no recording: no radar.npz, .bin with its .cfg, capture, stream or .dat"
 
 
 def read_offered(path: Path) -> Result:
-    """A recording, read anew. Raises InputError where there is none, or it cannot be read."""
+    """Reads a recording.
+
+    Raises:
+        InputError: If there is none, or it cannot be read.
+    """
     found = read_recorded(path)
     if found is None:
         raise InputError(f"{path} {NONE_FOUND}")
@@ -28,7 +32,11 @@ def read_offered(path: Path) -> Result:
 
 
 def check_offered(path: Path) -> None:
-    """Raises InputError where a path holds nothing that can be read."""
+    """Checks that a path contains a recording.
+
+    Raises:
+        InputError: If it does not.
+    """
     if path.is_dir():
         if not _is_result_or_capture(path) and not any(_samples_or_log(path)):
             raise InputError(f"{path} {NONE_FOUND}")
@@ -49,10 +57,17 @@ def _samples_or_log(folder: Path) -> list[Path]:
 
 
 def read_recorded(path: Path, radar: RadarConfig | None = None) -> Result | None:
-    """What a file or folder recorded or made: a result folder, raw samples, a capture, or a data port's log.
+    """Reads a recording or a result: a result folder, raw samples, a capture, or a data port's log.
 
-    `radar` is for raw samples that bring no .cfg. None where the folder holds none of these; raises InputError where
-    what it holds cannot be read.
+    Args:
+        path: File or folder.
+        radar: Radar of raw samples that have no .cfg.
+
+    Returns:
+        The recording; None if the folder contains none of these.
+
+    Raises:
+        InputError: If it cannot be read.
     """
     if path.is_file():
         return _of_file(path, None, radar)
@@ -77,7 +92,7 @@ def _processed(path: Path, radar: RadarConfig | Path | None) -> Result:
 
 
 def _port_log(file: Path, settings: Path | None) -> Result:
-    """The point cloud that a TI board sent over its data port; its .cfg says how often."""
+    """The point cloud that a TI board sent over its data port; the frame rate is that of its .cfg."""
     log = read_ti_uart(file)
     config = None if settings is None else load_radar(str(settings))
     period_s = PORT_LOG_PERIOD_S if config is None else config.frame_period_s

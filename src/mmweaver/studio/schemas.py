@@ -1,4 +1,4 @@
-"""The page's form: JSON, checked, and the same request as a command line and as Python."""
+"""The page's form: checked JSON, and the same request as a command line and as Python."""
 
 import shlex
 from dataclasses import fields, replace
@@ -10,7 +10,7 @@ from mmweaver.weaver.request import Request
 
 MAX_TEXT = 500
 MAX_PATH = 200
-DEFAULT_BOARD = "typical:0"  # one board for all seeds, so that what is prepared for the room stays valid
+DEFAULT_BOARD = "typical:0"  # one board for all seeds, so that a prepared room stays valid
 _OF_REQUEST = ("text", "seed", "at", "path")
 
 
@@ -27,7 +27,11 @@ class Form(Request):
 
     @classmethod
     def of(cls, body: Any) -> "Form":
-        """Checks the JSON. Raises InputError with what is wrong."""
+        """Checks the JSON of a form.
+
+        Raises:
+            InputError: With the reason.
+        """
         if not isinstance(body, dict):
             raise InputError("a request is a JSON object with room and text")
         own = vars(cls)["__annotations__"]
@@ -44,7 +48,7 @@ class Form(Request):
 
     @property
     def request(self) -> Request:
-        """The request alone, of one person or of several, the first of whom starts at the place."""
+        """The request alone, for one person or several, the first of whom starts at the given place."""
         text, places = list(self.text or ()), list(self.at or ())[:1]
         is_one = len(text) == 1
         at: Any = places + [None] * (len(text) - 1) if places else None
@@ -55,7 +59,14 @@ class Form(Request):
     def command(
         self, room_options: list[str], *, radar: str | None = None, board: str | None = None, motion: str | None = None
     ) -> str:
-        """The same as a command line; `radar`, `board` and `motion` name the files that the session brought."""
+        """The request as a command line.
+
+        Args:
+            room_options: Options that read the room.
+            radar: Uploaded radar file, if any.
+            board: Uploaded board file, if any.
+            motion: Uploaded motion file, if any.
+        """
         words = ["mmweaver", "generate", *room_options, *command_words(replace(self.request, text=self.text))]
         words += [] if motion is None else ["--motion", motion]
         words += ["--radar", radar or self.radar, "--board", board or self.board_name, "--method", self.method]
@@ -64,7 +75,14 @@ class Form(Request):
     def python(
         self, room_call: str, *, radar: str | None = None, board: str | None = None, motion: str | None = None
     ) -> str:
-        """The same as Python; `radar`, `board` and `motion` name the files that the session brought."""
+        """The request as Python.
+
+        Args:
+            room_call: Call of `Weaver` that reads the room.
+            radar: Uploaded radar file, if any.
+            board: Uploaded board file, if any.
+            motion: Uploaded motion file, if any.
+        """
         request = replace(self.request, board=board or self.board_name)
         given = {one.name: getattr(request, one.name) for one in fields(Request)}
         arguments = "".join(

@@ -1,4 +1,4 @@
-"""Runs the studio's server: binds, prints the address, opens the browser when it is ready."""
+"""Runs the studio's server: binds, prints the address, opens the browser once it is ready."""
 
 import secrets
 import socket
@@ -14,7 +14,7 @@ from mmweaver.studio.service import Service
 
 
 class _Announcing(uvicorn.Server):
-    """Says when it is ready to answer."""
+    """Announces when it is ready to answer."""
 
     def __init__(self, config: uvicorn.Config, address: str, announce: Callable[[str], None], open_browser: bool):
         super().__init__(config)
@@ -38,10 +38,20 @@ def serve(
     announce: Callable[[str], None],
     open_browser: bool,
 ) -> None:
-    """Serves until interrupted; `announce` is given the lines for the user.
+    """Serves until interrupted.
 
-    Raises InputError where the address cannot be had, a folder holds no room, a recording does not exist, or a
-    recogniser is none.
+    Args:
+        rooms: Folders of rooms to offer.
+        recordings: Recordings to offer.
+        recognisers: Folders of recognisers to offer.
+        host: Address to bind; other than the loopback requires a token.
+        port: Port to bind; 0 for any free one.
+        workers: Number of worker threads; by default one per core.
+        announce: Called with each line for the user.
+        open_browser: Whether the page is opened.
+
+    Raises:
+        InputError: If the address is not available, or a room, recording or recogniser is not valid.
     """
     bound = _bind(host, port)
     port = bound.getsockname()[1]
@@ -78,7 +88,7 @@ def _bind(host: str, port: int) -> socket.socket:
 
 
 def _own_addresses() -> set[str]:
-    """The addresses of this machine's name, where they can be found."""
+    """Addresses of this machine's host name, where they can be resolved."""
     try:
         return {str(entry[4][0]) for entry in socket.getaddrinfo(socket.gethostname(), None)}
     except OSError:

@@ -1,4 +1,4 @@
-"""The studio's server: the page, its calls, and who may make them."""
+"""The studio's server: the page, its API, and access control."""
 
 import asyncio
 import contextlib
@@ -32,7 +32,7 @@ T = TypeVar("T")
 Work = Callable[[Session, dict[str, Any]], Any]
 LOOPBACK = {"127.0.0.1", "localhost", "::1"}
 MAX_JSON_BYTES = 100_000
-MAX_IN_FLIGHT = 2  # chunks of a live stream that the page has not taken yet
+MAX_IN_FLIGHT = 2  # unacknowledged chunks of a live stream
 SECURITY = {
     "content-security-policy": "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:;"
     " connect-src 'self' ws: wss:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
@@ -48,9 +48,9 @@ _INDEX = """<!doctype html>
 
 
 class Door:
-    """Lets in only requests to the host that was announced, from its own pages, with the token where there is one.
+    """Admits only requests to the announced host, from its own pages, and with the token where there is one.
 
-    The host's name is checked because a foreign page could have its own name lead to this machine (DNS rebinding).
+    The host name is checked because a foreign page could resolve its own name to this machine (DNS rebinding).
     """
 
     def __init__(self, app: ASGIApp, hosts: set[str], token: str | None):
@@ -82,14 +82,19 @@ class Door:
 
 
 class StudioServer:
-    """The calls of the page. Everything that takes time goes through the one queue."""
+    """The API of the page. Everything that takes time goes through one queue."""
 
     def __init__(self, service: Service, *, workers: int | None = None):
         self.service = service
         self.jobs = Jobs(workers)
 
     def app(self, *, hosts: set[str] | None = None, token: str | None = None) -> Starlette:
-        """The ASGI application; `hosts` are the names under which it may be asked for, by default this machine's."""
+        """The ASGI application.
+
+        Args:
+            hosts: Host names under which it may be requested; by default those of the loopback.
+            token: Required token, None for none.
+        """
         routes = [
             Route("/", self._index),
             Route("/page/mmweaver.js", self._script),
@@ -130,7 +135,7 @@ class StudioServer:
         return JSONResponse({"session": session.id, "exports": kinds, "live": True, "paths": True, **offered})
 
     def _calls(self) -> dict[str, tuple[str, Work]]:
-        """What the page asks for, by path: a session and what was asked of it -> bytes for the page, or JSON."""
+        """API by path: functions from a session and the request's JSON to bytes for the page, or JSON."""
         service = self.service
         return {
             "room/{name}": ("GET", lambda own, got: service.room_bytes(own, got["name"], got.get("radar", "awr1843"))),
@@ -176,7 +181,7 @@ class StudioServer:
         return JSONResponse(await self._do(request, lambda: uploads.take(session, folder, chosen)))
 
     async def _presence(self, socket: WebSocket) -> None:
-        """Open as long as the tab; its end is the session's."""
+        """Open for as long as the tab; closing it ends the session."""
         session = await self._accepted(socket)
         if session is None:
             return
@@ -186,7 +191,7 @@ class StudioServer:
         self.service.end(session)
 
     async def _live(self, socket: WebSocket) -> None:
-        """Sentences come, chunks go; a chunk is made when the page has taken the one before the last."""
+        """Receives sentences and sends chunks; at most MAX_IN_FLIGHT chunks are unacknowledged."""
         session = await self._accepted(socket)
         if session is None:
             return
@@ -210,7 +215,7 @@ class StudioServer:
             pass
 
     async def _accepted(self, socket: WebSocket) -> Session | None:
-        """The session that the socket names; where there is none, the socket is closed."""
+        """The session that the socket names; without one, the socket is closed."""
         try:
             session = self.service.sessions.get(socket.query_params.get("session", ""))
         except InputError:
@@ -224,7 +229,7 @@ class StudioServer:
         return self.service.sessions.get(request.headers.get("x-session", ""))
 
     async def _do(self, request: Request, work: Callable[[], T]) -> T:
-        """Queues `work`; where the client leaves first, nobody waits for it."""
+        """Queues `work`, and drops it if the client leaves first."""
 
         async def gone() -> bool:
             return await request.is_disconnected()
@@ -237,7 +242,7 @@ class StudioServer:
 
 async def _json(request: Request) -> Any:
     body = bytearray()
-    async for part in request.stream():  # no more of it is taken into memory than may be
+    async for part in request.stream():  # bounded memory
         body += part
         if len(body) > MAX_JSON_BYTES:
             raise InputError("this request is too long")

@@ -1,4 +1,7 @@
-"""What the studio does for a session: rooms, sequences, comparisons and exports. Blocking; the server queues it."""
+"""Operations of the studio for a session: rooms, sequences, comparisons and exports. Blocking.
+
+The server queues them.
+"""
 
 from collections import OrderedDict
 from collections.abc import Callable, Iterator
@@ -33,13 +36,13 @@ from mmweaver.weaver.generation import Generation, Room
 DEMO = "demo"
 FIRST_TEXT = "a person walks towards the radar, then waves with the left hand"
 BOARDS = ("typical:0", "typical:1", "typical:2", "ideal")
-_MAX_WEAVERS = 12  # each keeps the room that it worked in last
+_MAX_WEAVERS = 12  # each keeps its last room
 
 T = TypeVar("T")
 
 
 class Offered(Generic[T]):
-    """What every session may use, by the names of its folders; each is read when somebody asks for it."""
+    """Items available to every session, by the names of their folders; each is read on demand."""
 
     def __init__(self, what: str, places: list[Path], read: Callable[[Path], T], taken: tuple[str, ...] = ()):
         self._what, self._read, self._places = what, read, dict[str, Path]()
@@ -51,18 +54,28 @@ class Offered(Generic[T]):
 
     @property
     def names(self) -> list[str]:
-        """All names in the order of the command line."""
+        """All names, in the order of the command line."""
         return list(self._places)
 
     def get(self, name: str) -> T:
-        """One by its name. Raises InputError where there is none, or it cannot be read."""
+        """Reads one item.
+
+        Args:
+            name: Its name.
+
+        Raises:
+            InputError: If it does not exist or cannot be read.
+        """
         if name not in self._places:
             raise InputError(f"this {self._what} is not known here; choose another one")
         return self._read(self._places[name])
 
 
 class RecoverableError(InputError):
-    """A request that cannot be met; `recovery_options` are buttons of the page: a label, and what they change."""
+    """A request that cannot be met.
+
+    `recovery_options` are buttons of the page: a label, and the change of the request.
+    """
 
     def __init__(self, message: str, recovery_options: list[dict[str, Any]]):
         super().__init__(message)
@@ -71,7 +84,7 @@ class RecoverableError(InputError):
 
 @contextmanager
 def recovery_options(asked: Form) -> Iterator[None]:
-    """Turns what would help a motion that finds no room, or does not fit its path, into what the page can change."""
+    """Converts errors of motions that find no room, or do not fit their path, to changes that the page offers."""
     try:
         yield
     except NoRoomError as error:
@@ -110,14 +123,14 @@ class Service:
         self._lock = Lock()
 
     def warm_up(self) -> None:
-        """Reads the first room and makes one sequence in it, so that the first visitor does not wait."""
+        """Reads the first room and generates one sequence in it, so that the first visitor does not wait."""
         name = next(iter(self._rooms))
         asked = Form(room=name, text=[FIRST_TEXT])
         weaver = self._weaver(asked, PRESETS[asked.radar])
         weaver.generate(self._rooms[name].room, FIRST_TEXT, board=asked.board_name)
 
     def offer(self) -> dict[str, Any]:
-        """What the page's controls hold."""
+        """Choices of the page's controls."""
         load_activity_plugins()
         return {
             "rooms": [(name, room.label) for name, room in self._rooms.items()],
@@ -131,7 +144,15 @@ class Service:
         }
 
     def room_of(self, session: Session, name: str) -> BroughtRoom:
-        """A room by its id: the session's own or an offered one. Raises InputError."""
+        """A room by its id.
+
+        Args:
+            session: The session, for its own rooms.
+            name: Id of one of them or of an offered room.
+
+        Raises:
+            InputError: If it is unknown.
+        """
         known = self._rooms | session.rooms
         if name not in known:
             raise InputError("this room is not known here; choose another one")
@@ -139,7 +160,15 @@ class Service:
 
     @staticmethod
     def radar_of(session: Session, name: str) -> RadarConfig:
-        """A radar by its id: the session's own or a preset. Raises InputError."""
+        """A radar by its id.
+
+        Args:
+            session: The session, for its own radars.
+            name: Id of one of them, or name of a preset.
+
+        Raises:
+            InputError: If it is unknown.
+        """
         if name in session.radars:
             return session.radars[name][1]
         if name not in PRESETS:
@@ -148,7 +177,16 @@ class Service:
 
     @staticmethod
     def board_of(session: Session, name: str, radar: RadarConfig) -> Board:
-        """A board by its id: the session's own, "ideal" or "typical:N". Raises InputError."""
+        """A board by its id.
+
+        Args:
+            session: The session, for its own boards.
+            name: Id of one of them, "ideal" or "typical:N".
+            radar: The radar that the board is for.
+
+        Raises:
+            InputError: If it is unknown.
+        """
         if name in session.boards:
             return find_board(session.boards[name][1], radar)
         if name != "ideal" and not name.startswith("typical:"):
@@ -157,20 +195,42 @@ class Service:
 
     @staticmethod
     def motion_of(session: Session, name: str | None) -> MotionClip | None:
-        """A motion that the session brought; None for None. Raises InputError."""
+        """A motion uploaded to the session.
+
+        Args:
+            session: The session.
+            name: Id of the motion; None gives None.
+
+        Raises:
+            InputError: If it is no longer kept.
+        """
         if name is not None and name not in session.motions:
             raise InputError("this motion is no longer kept; open its file again")
         return None if name is None else session.motions[name][1]
 
     def room_bytes(self, session: Session, name: str, radar: str) -> bytes:
-        """A room, packed for the page, with the places where this radar sees a person."""
+        """A room, packed for the page, with the places where this radar can observe a person.
+
+        Args:
+            session: The session.
+            name: Id of the room.
+            radar: Id of the radar.
+        """
         label = session.rooms[name].label if name in session.rooms else name
         range_m = self.radar_of(session, radar).range_m
         shown = room_playback(self.room_of(session, name).room.scene, label, (float(range_m[0]), float(range_m[-1])))
         return pack(shown.header, shown.arrays)
 
     def generate(self, session: Session, body: Any) -> bytes:
-        """A sequence, kept in the session and packed for the page. Raises InputError."""
+        """Generates a sequence, kept in the session and packed for the page.
+
+        Args:
+            session: The session.
+            body: JSON of the form.
+
+        Raises:
+            InputError: If the request cannot be met.
+        """
         asked = Form.of(body)
         room, radar = self.room_of(session, asked.room), self.radar_of(session, asked.radar)
         weaver, board = self._weaver(asked, radar), self.board_of(session, asked.board_name, radar)
@@ -198,12 +258,29 @@ class Service:
         return self._kept(session, result, {"seconds": generation.stages.seconds, **repeated})
 
     def recording(self, session: Session, name: str) -> bytes:
-        """An offered recording, kept in the session and packed for the page. Raises InputError."""
+        """An offered recording, kept in the session and packed for the page.
+
+        Args:
+            session: The session.
+            name: Name of the recording.
+
+        Raises:
+            InputError: If it is unknown or cannot be read.
+        """
         return self._kept(session, self.recordings.get(name), {})
 
     @staticmethod
     def compare(session: Session, a: str, b: str) -> dict[str, Any]:
-        """The numbers of two kept results. Raises InputError."""
+        """The comparison of two kept results, see `comparison`.
+
+        Args:
+            session: The session.
+            a: Id of the reference.
+            b: Id of the result that is compared with it.
+
+        Raises:
+            InputError: If one is no longer kept, or they cannot be compared.
+        """
         return comparison(session.result(a), session.result(b))
 
     def result_bytes(self, session: Session, name: str) -> bytes:
@@ -211,7 +288,15 @@ class Service:
         return self._packed(session.result(name), name, {})
 
     def live(self, session: Session, body: Any) -> Live:
-        """A stream in one of the session's rooms. Raises InputError."""
+        """Starts a stream in one of the session's rooms.
+
+        Args:
+            session: The session.
+            body: JSON of the form.
+
+        Raises:
+            InputError: If the request cannot be met.
+        """
         asked = Form.of(body)
         radar = self.radar_of(session, asked.radar)
         board = self.board_of(session, asked.board_name, radar)
@@ -222,7 +307,7 @@ class Service:
         return Live(Weaver(method=asked.method, radar=radar, points="firmware"), room, asked, board, recogniser)
 
     def end(self, session: Session) -> None:
-        """Ends a session; what was prepared for its rooms, radars and boards goes with it."""
+        """Ends a session and frees everything prepared for its rooms, radars and boards."""
         own = {*session.rooms, *session.radars, *session.boards}
         with self._lock:
             for key in [key for key in self._weavers if own & set(key)]:
@@ -240,7 +325,7 @@ class Service:
         return pack({**shown.header, **more, "result": name}, shown.arrays)
 
     def _weaver(self, asked: Form, radar: RadarConfig) -> Weaver:
-        """A generator for this room, radar, board and method; kept, because it holds what it prepared for the room."""
+        """A generator for this room, radar, board and method, cached with the prepared room."""
         if asked.method not in METHODS:
             raise InputError(f"unknown method {asked.method!r}; choose one of the list")
         key = (asked.room, asked.radar, asked.board_name, asked.method)
@@ -265,9 +350,14 @@ def _offered_room(files: RoomFiles) -> BroughtRoom:
 
 
 def comparison(a: Result, b: Result) -> dict[str, Any]:
-    """The numbers of `mmweaver compare`: text and values, and a row for each feature that both sides show.
+    """The results of `mmweaver compare`: text and values, and a row for each feature that both sides have.
 
-    Raises InputError where one of them is a point cloud alone, or the two have no common ranges.
+    Args:
+        a: The reference.
+        b: The result that is compared with it.
+
+    Raises:
+        InputError: If one of them is a point cloud alone, or they have no common ranges.
     """
     found = compare_signals([_signal(a, "A")], [_signal(b, "B")], names=(f"A: {a.title}", f"B: {b.title}"))
     return {"text": found.text(), "values": found.to_values(), "rows": [_row(one) for one in found.ranked]}

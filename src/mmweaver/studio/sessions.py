@@ -1,4 +1,4 @@
-"""Sessions of the studio: each has its own rooms, results and folder, and takes them along when it ends."""
+"""Sessions of the studio: each has its own rooms, results and folder, which are removed when it ends."""
 
 import secrets
 import shutil
@@ -21,26 +21,27 @@ from mmweaver.viz.sequence import Playback, make_playback
 from mmweaver.weaver.generation import Generation, Room
 
 MAX_SESSIONS = 100
-MAX_RESULTS = 6  # of one session; the oldest go first
+MAX_RESULTS = 6  # per session; the oldest are dropped first
 MAX_RESULT_BYTES = 1_000_000_000  # cubes and samples of all sessions
-UNUSED_S = 1800.0  # a session that never said goodbye
+UNUSED_S = 1800.0  # idle time after which a session that was not closed ends
 
 
 @dataclass(frozen=True, kw_only=True)
 class Result:
-    """What a session made or brought: a sequence and, for a generated one, all that made it."""
+    """A sequence that a session generated or uploaded, with everything that reproduces a generated one."""
 
-    cube: RadarCube | None  # None of a log of points, which brings `frame_period_s` and the name of its `radar`
+    cube: RadarCube | None  # None for a log of points, which has `frame_period_s` and the name of its `radar`
     points: PointCloud
     poses: tuple[PoseSequence, ...]
     meta: dict
     frame_period_s: float = 0.1
     radar: str = ""
     generation: Generation | None = None
-    with_samples: Callable[[], Generation] | None = None  # generates the same again, keeping its ADC samples
+    with_samples: Callable[[], Generation] | None = None  # generates the same sequence with its ADC samples
 
     @property
     def num_bytes(self) -> int:
+        """Memory of cube, points and samples in bytes."""
         adc = None if self.generation is None else self.generation.adc
         cube_bytes = 0 if self.cube is None else self.cube.values.nbytes
         return cube_bytes + 48 * len(self.points.frame) + (0 if adc is None else adc.samples.nbytes)
@@ -53,7 +54,7 @@ class Result:
         return f"{text if isinstance(text, str) else ' | '.join(text)}   ({radar})"
 
     def playback(self) -> Playback:
-        """The sequence for the page."""
+        """The sequence for the playback page."""
         if self.cube is None:
             return point_log_playback(self.points, self.frame_period_s, self.radar, self.meta)
         return make_playback(self.cube, self.points, self.poses, self.meta)
@@ -70,7 +71,7 @@ class BroughtRoom:
 
     @cached_property
     def room(self) -> Room:
-        """The room, read at its first use. Raises InputError."""
+        """The room, read on first use; InputError if it cannot be read."""
         return self.read()
 
 
@@ -91,7 +92,7 @@ class Session:
         self.is_open = True
 
     def add(self, result: Result) -> str:
-        """Keeps a result and returns its id."""
+        """Keeps a result and returns its id; the oldest are dropped beyond MAX_RESULTS."""
         name = secrets.token_urlsafe(9)
         self.results[name] = result
         while len(self.results) > MAX_RESULTS:
@@ -99,22 +100,29 @@ class Session:
         return name
 
     def forget_oldest(self) -> None:
-        """Drops the oldest result, the one that is compared with last of all."""
+        """Drops the oldest result; the pinned one is the last to go."""
         self.results.pop(next((name for name in self.results if name != self.pinned), next(iter(self.results))))
 
     def result(self, name: str) -> Result:
-        """A result by its id. Raises InputError where it is not this session's, or gone."""
+        """A result by its id.
+
+        Args:
+            name: The id.
+
+        Raises:
+            InputError: If it is not of this session, or no longer kept.
+        """
         if name not in self.results:
             raise InputError("this result is no longer kept; generate it again")
         return self.results[name]
 
     def keep(self, name: str) -> dict[str, str]:
-        """Holds a result as long as others are compared with it; "none" lets go."""
+        """Pins the result that others are compared with; "none" releases it."""
         self.pinned = None if name == "none" or not self.result(name) else name
         return {}
 
     def end(self) -> None:
-        """Removes the session's folder; its rooms and results go with it."""
+        """Removes the session's folder, rooms and results."""
         self.is_open = False
         for brought in (self.rooms, self.radars, self.boards, self.motions, self.photos):
             brought.clear()
@@ -130,7 +138,11 @@ class Sessions:
         self._lock = Lock()
 
     def open(self) -> Session:
-        """A new session. Raises InputError where there are too many."""
+        """Opens a session, after closing idle ones.
+
+        Raises:
+            InputError: If there are too many.
+        """
         with self._lock:
             for session in [one for one in self._open.values() if monotonic() - one.used_s > UNUSED_S]:
                 self._end(session)
@@ -141,7 +153,14 @@ class Sessions:
             return session
 
     def get(self, name: str) -> Session:
-        """A session by its id. Raises InputError where there is none."""
+        """A session by its id.
+
+        Args:
+            name: The id.
+
+        Raises:
+            InputError: If it does not exist.
+        """
         session = self._open.get(name)
         if session is None:
             raise InputError("this session has ended; load the page again")
@@ -154,7 +173,7 @@ class Sessions:
             self._end(session)
 
     def end_all(self) -> None:
-        """Ends all, when the server stops."""
+        """Ends all sessions, when the server stops."""
         with self._lock:
             for session in list(self._open.values()):
                 self._end(session)

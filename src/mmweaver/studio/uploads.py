@@ -1,4 +1,4 @@
-"""Files that a visitor brings: a room as photo, scan or mesh, a recording, a radar, a motion or a result folder."""
+"""Uploads of a visitor: a room as photo, scan or mesh, a recording, a radar, a motion or a result folder."""
 
 import secrets
 from pathlib import Path
@@ -30,9 +30,20 @@ MESHES = (".glb", ".ply", ".obj")
 
 
 def take(session: Session, folder: Path, radar: RadarConfig) -> dict[str, Any]:
-    """Reads the files of `folder` as what they are together; says what was found. Raises InputError.
+    """Interprets the files of a folder, and adds the result to a session.
 
-    Names were chosen by the server (`place_of`), so nothing outside the folder is ever opened.
+    File names were chosen by the server (`place_of`), so nothing outside the folder is ever opened.
+
+    Args:
+        session: The session.
+        folder: Folder of the uploaded files.
+        radar: Radar of raw samples that have no .cfg.
+
+    Returns:
+        What was found, for the page.
+
+    Raises:
+        InputError: If the files cannot be used.
     """
     folder = _unwrapped(folder)
     files = {file.name.lower(): file for file in sorted(folder.iterdir()) if file.is_file()}
@@ -62,7 +73,7 @@ def take(session: Session, folder: Path, radar: RadarConfig) -> dict[str, Any]:
 
 
 def file_names(listed: Any, names: list[str | None]) -> list[str]:
-    """The names of files as the page said them: JSON with a path of each within what was dropped, else plain names."""
+    """File names sent by the page: paths within what was dropped, as JSON, or otherwise plain names."""
     paths = parse_json(listed, "the paths") if isinstance(listed, str) else None
     if isinstance(paths, list) and len(paths) == len(names) and all(isinstance(one, str) for one in paths):
         return paths
@@ -70,7 +81,12 @@ def file_names(listed: Any, names: list[str | None]) -> list[str]:
 
 
 def place_of(folder: Path, said: str) -> Path:
-    """Where a file is kept: inside `folder` whatever was said, in folders that are made."""
+    """Path for an uploaded file, always inside `folder`; subfolders are created.
+
+    Args:
+        folder: Folder of the upload.
+        said: Path sent by the browser.
+    """
     parts = [part for part in said.replace("\\", "/").split("/") if part.strip(".")]
     for part in parts[-1 - MAX_DEPTH : -1]:
         folder = folder / safe_name(part, set())
@@ -88,7 +104,7 @@ def safe_name(name: str, taken: set[str]) -> str:
 
 
 def room_with_estimated_depth(session: Session, name: str) -> dict[str, Any]:
-    """The room of a photo that was brought without depth. Raises InputError where no model can be had."""
+    """The room of a photo that was uploaded without depth; InputError if no depth model is available."""
     if name not in session.photos:
         raise InputError("this photo is no longer kept; open its file again")
     photo = session.photos[name]
@@ -100,14 +116,14 @@ def _weaver() -> Weaver:
 
 
 def _unwrapped(folder: Path) -> Path:
-    """The folder that was dropped, where it is all that was."""
+    """The single folder within an upload, if it contains nothing else."""
     inside = list(folder.iterdir())
     is_wrapper = len(inside) == 1 and inside[0].is_dir() and scan_kind(folder) is None
     return _unwrapped(inside[0]) if is_wrapper else folder
 
 
 def _photo(session: Session, files: dict[str, Path], folder: Path) -> dict[str, Any]:
-    """Files of a room by their names; a depth map is one that says depth, or is .npy or .tif."""
+    """Files of a room by their names; a depth map has "depth" in its name, or is .npy or .tif."""
     if any(name in files for name in COLOUR) and any(name in files for name in DEPTH):
         return _photographed(session, RoomFiles.find(folder))
     depth = [one for name, one in files.items() if "depth" in name or one.suffix.lower() in DEPTHS]
@@ -120,8 +136,8 @@ def _photo(session: Session, files: dict[str, Path], folder: Path) -> dict[str, 
     return _photographed(session, RoomFiles(rgb=colour[0], depth=depth[0], camera=camera))
 
 
-def _drop_depth(session: Session, photo: Path) -> RecoverableError:
-    """Offers to estimate the depth where the package for it is installed, else says what to install."""
+def _without_depth(session: Session, photo: Path) -> RecoverableError:
+    """Offers to estimate the depth if the package is installed, otherwise names what to install."""
     name = secrets.token_urlsafe(6)
     session.photos[name] = photo
     said = "a photo alone is not enough: bring its depth too (depth.png in millimetres, or .npy in metres)"
@@ -137,13 +153,13 @@ def _photographed(session: Session, files: RoomFiles) -> dict[str, Any]:
 
 
 def _mesh(session: Session, mesh: Path, files: dict[str, Path]) -> dict[str, Any]:
-    """A scan or model, with the JSON of its materials where one came along."""
+    """A scan or model, with the JSON of its materials if there is one."""
     materials = next((file for name, file in files.items() if name.endswith(".json")), None)
     return _room(session, _weaver().read_mesh(mesh, materials=materials), room=mesh, materials=materials)
 
 
 def _room(session: Session, found: Room, /, **given: Path | str | None) -> dict[str, Any]:
-    """Keeps a room; `given` are the options of `mmweaver generate` that read it, with names for files."""
+    """Keeps a room; `given` are the options of `mmweaver generate` that read it, by name of the file."""
     words = {name: Path(value).name for name, value in given.items() if value is not None}
     pairs = [
         ("mesh-set", f"materials={value}") if name == "materials" else (name, value) for name, value in words.items()
@@ -168,7 +184,7 @@ def _radar_or_board(session: Session, file: Path) -> dict[str, Any]:
 
 
 def _named(kept: dict[str, Any], kind: str, file: Path, value: Any) -> dict[str, Any]:
-    """Keeps what a file holds with the file's name, by a new id."""
+    """Keeps the contents of a file under a new id, with the file's name."""
     name = secrets.token_urlsafe(6)
     kept[name] = file.name, value
     return {"kind": kind, "id": name, "label": file.name}

@@ -1,4 +1,4 @@
-"""preview.gif: photo, range-Doppler and range-azimuth over time. The layout is drawn once, only moving parts anew."""
+"""preview.gif: photo, range-Doppler and range-azimuth over time. Only moving parts are redrawn."""
 
 from collections.abc import Callable
 from functools import cache
@@ -18,13 +18,18 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from PIL.Image import Image
 
-Update = Callable[[int], list[Any]]  # the artists to draw at a frame
+Update = Callable[[int], list[Any]]  # returns the artists to draw at a frame
 BODY_COLOUR = (0.99, 0.80, 0.30)
 MIN_MS, MAX_MS = 40, 1000  # duration of one picture
 
 
 def draw_animation(view: FigureData, path: Path) -> None:
-    """Writes a looping GIF in real time (within 0.04 to 1 s per picture), 900 pixels wide."""
+    """Writes a looping GIF in real time (within 0.04 to 1 s per picture), 900 pixels wide.
+
+    Args:
+        view: The data to show.
+        path: The GIF.
+    """
     pictures = render_pictures(view)
     step_s = (view.time_edges_s[1] - view.time_edges_s[0]) / len(pictures)
     duration_ms = int(np.clip(round(step_s * 1000), MIN_MS, MAX_MS))
@@ -33,7 +38,7 @@ def draw_animation(view: FigureData, path: Path) -> None:
 
 
 def render_pictures(view: FigureData) -> list[np.ndarray]:
-    """All frames of the animation as (height, width, 3) uint8."""
+    """All frames of the animation, (height, width, 3) uint8 each."""
     import matplotlib
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure

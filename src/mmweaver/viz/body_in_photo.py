@@ -10,9 +10,9 @@ from mmweaver.core.shapes import Array, Points
 from mmweaver.viz.body_rasteriser import Body, BodyPixels, CapsulesInPicture, blend, rasterise, seen_width
 
 NEAREST_M = 0.15  # capsules nearer to the camera are not drawn
-OCCLUDED_BEYOND_M, EDGE_M = 0.12, 0.06  # behind the measured surface: hidden from, and completely so after
-OCCLUDED_ALPHA = 0.13  # a hint of what furniture hides
-SHADOW_REACH_M = 0.55  # of a capsule's end over surfaces about it
+OCCLUDED_BEYOND_M, EDGE_M = 0.12, 0.06  # depth behind the surface where occlusion begins, and width of the transition
+OCCLUDED_ALPHA = 0.13  # opacity of occluded parts
+SHADOW_REACH_M = 0.55  # reach of a capsule's shadow on surfaces around it
 SHADOW_STRENGTH = 0.75
 SHADOW_STEP_PX = 3  # shadows are smooth and computed for every third pixel
 
@@ -21,8 +21,8 @@ class BodyPainter:
     """Paints bodies into pictures of one photo.
 
     Args:
-        aligned: the photo.
-        size: rows and columns of the pictures.
+        aligned: The photo.
+        size: Rows and columns of the pictures.
     """
 
     def __init__(self, aligned: AlignedPhoto, size: tuple[int, int]) -> None:
@@ -38,7 +38,12 @@ class BodyPainter:
         self._surface_m = np.where(np.isfinite(surface_m), surface_m, 1e3).astype(np.float32)
 
     def paint(self, picture: Array, bodies: Sequence[tuple[Body, Sequence[float]]]) -> None:
-        """Paints bodies of a colour (0 to 1) into a picture (row, column, 3) uint8, the last one on top."""
+        """Paints bodies into a picture.
+
+        Args:
+            picture: Picture (row, column, 3), uint8, changed in place.
+            bodies: Bodies with their colours (0 to 1), the last one on top.
+        """
         drawn = []
         for body, colour in bodies:
             capsules = self._capsules(body)
@@ -50,7 +55,7 @@ class BodyPainter:
             blend(picture, seen, np.asarray(colour, np.float32), self._alpha(seen))
 
     def _alpha(self, seen: BodyPixels) -> Float[Array, "row column"]:
-        """How far a body hides what is behind it."""
+        """Opacity of a body at each pixel."""
         hidden_m = np.where(seen.cover > 0.0, seen.depth_m, 0.0) - self._depth_m[seen.rows, seen.columns]
         return np.clip(1.0 - (hidden_m - OCCLUDED_BEYOND_M) / EDGE_M, OCCLUDED_ALPHA, 1.0)
 
@@ -68,7 +73,7 @@ class BodyPainter:
         return CapsulesInPicture(ends_px=ends_px, depth_m=depth_m, radius_px=radius_px, radius_m=radius_m)
 
     def _shade(self, picture: Array, bodies: Sequence[Body]) -> None:
-        """Darkens measured surfaces near the bodies, each as the body that takes most ambient light from it does."""
+        """Darkens measured surfaces near the bodies, by the body that occludes most ambient light."""
         from PIL import Image
 
         surface_m = self._surface_m.reshape(-1, 3)
@@ -82,13 +87,13 @@ class BodyPainter:
 
 
 def _is_near(points_m: Points, ends_m: Float[Array, "capsule 2 3"], reach_m: float) -> Bool[Array, " point"]:
-    """Which points lie within a distance of the box about the capsules."""
+    """Mask of the points within a distance of the bounding box of the capsules."""
     low, high = ends_m.min(axis=(0, 1)) - reach_m, ends_m.max(axis=(0, 1)) + reach_m
     return np.all((points_m > low) & (points_m < high), axis=1)
 
 
 def _unblocked(points_m: Points, body: Body) -> Float[Array, " point"]:
-    """Share of ambient light that spheres at the ends of the capsules leave to points, 0 to 1."""
+    """Share of ambient light, 0 to 1, that spheres at the ends of the capsules leave at points."""
     centre_m = body.ends_m.reshape(-1, 3).astype(np.float32)
     square = (points_m**2).sum(axis=1)[:, None] + (centre_m**2).sum(axis=1) - 2.0 * points_m @ centre_m.T
     fading = np.maximum(1.0 - square / SHADOW_REACH_M**2, 0.0) ** 2

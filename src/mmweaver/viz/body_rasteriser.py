@@ -1,8 +1,8 @@
-"""A shaded body of capsules in numpy: which pixels it covers, how bright and how deep they are.
+"""Rasterises a shaded body of capsules in numpy: coverage, brightness and depth of pixels.
 
-A capsule appears as the discs of all spheres along its axis. A pixel takes the sphere that is nearest to it in the
-picture, and its depth and normal there; a depth buffer decides between capsules. A body has a face: without one nobody
-sees in a picture that a head nods, shakes or looks around.
+A capsule appears as the discs of all spheres along its axis. A pixel takes depth and normal of the sphere that is
+nearest to it in the picture; a depth buffer decides between capsules. The body has a face, without which nodding,
+shaking or turning the head would be invisible.
 """
 
 from dataclasses import dataclass
@@ -16,18 +16,18 @@ from mmweaver.core.skeleton import joint
 
 Array = np.ndarray
 LIGHT = np.array([-0.45, -0.62, 0.64])  # unit vector to the light: from the left, above and behind the viewer
-REST_TILT_RAD = float(np.arctan2(0.016, 0.052))  # of the head's joint ahead of the neck's, upright
+REST_TILT_RAD = float(np.arctan2(0.016, 0.052))  # of the head joint in front of the neck joint, upright
 MAX_YAW_RAD, MAX_PITCH_RAD = 1.4, 1.0  # of the head
-# Face and nose of somebody of reference height, in the head's frame (ahead, up from the head's joint), and their radii.
+# Face and nose at reference height, in the head's frame (ahead, up from the head joint), and their radii.
 _FACE_M = np.array([[(0.042, 0.015), (0.042, 0.1)], [(0.1, 0.075), (0.135, 0.045)]])
 _FACE_RADIUS_M = np.array([(0.066, 0.072), (0.014, 0.02)])
 FACE_COUNT = len(_FACE_M)  # of the capsules
-AMBIENT = 0.46  # brightness of a surface along which the light falls; what is turned away is darker
+AMBIENT = 0.46  # brightness at grazing light; surfaces turned away are darker
 
 
 @dataclass(frozen=True, kw_only=True)
 class Body:
-    """Axes and thickness of one person's capsules at one time, in the frame of the joints."""
+    """Axes and thickness of one person's capsules at one time, in the coordinates of the joints."""
 
     ends_m: Float[Array, "capsule 2 3"]
     radius_m: Float[Array, "capsule 2"]  # half the depth of the cross-section
@@ -37,28 +37,36 @@ class Body:
 
 @dataclass(frozen=True, kw_only=True)
 class CapsulesInPicture:
-    """A body's capsules as a camera sees them; the last two axes of `ends_px` are the end and (column, row)."""
+    """A body's capsules as projected by a camera; the last two axes of `ends_px` are the end and (column, row)."""
 
     ends_px: Float[Array, "capsule 2 2"]
     depth_m: Float[Array, "capsule 2"]
     radius_px: Float[Array, "capsule 2"]
-    radius_m: Float[Array, "capsule 2"]  # how far the surface bulges towards the viewer
+    radius_m: Float[Array, "capsule 2"]  # distance of the surface from the axis towards the viewer
 
 
 @dataclass(frozen=True, kw_only=True)
 class BodyPixels:
-    """The smallest part of a picture that holds a body."""
+    """The smallest part of a picture that contains a body."""
 
     rows: slice
     columns: slice
     cover: Float[Array, "row column"]  # share of the pixel that the body covers
     depth_m: Float[Array, "row column"]  # inf where it covers nothing
     light: Float[Array, "row column"]  # brightness, 0 to 1
-    capsule: Int[Array, "row column"]  # the capsule that is seen
+    capsule: Int[Array, "row column"]  # index of the visible capsule
 
 
 def bodies_of(pose: PoseSequence, instants: Int[Array, " instant"]) -> list[Body]:
-    """The body of a person at some indices of `time_s`: its capsules, then those of the face."""
+    """Bodies of a person.
+
+    Args:
+        pose: The motion.
+        instants: Indices (instant,) of its times.
+
+    Returns:
+        One body per instant: its capsules, then those of the face.
+    """
     posed = pose_capsules(pose.joints_m[instants], pose.height_m)
     ends_m = np.stack([posed.start_m, posed.start_m + posed.axis_m], axis=2)
     face_m, face_radius_m = face_capsules(pose.joints_m[instants], pose.height_m)
@@ -77,7 +85,11 @@ def seen_width(
 ) -> Float[Array, " capsule"]:
     """Half the width of elliptic cross-sections in the picture, relative to the radius.
 
-    `wide_px` is the picture of the unit vector along which a cross-section is wider, in units of the picture's scale.
+    Args:
+        along_px: Direction (capsule, 2) of the axes in the picture.
+        wide_px: Projection (capsule, 2) of the unit vector along which a cross-section is wider, at the picture's
+            scale.
+        width_per_depth: Width over depth (capsule,) of the cross-sections.
     """
     length = np.maximum(np.hypot(*along_px.T), 1e-9)
     across = (wide_px[:, 1] * along_px[:, 0] - wide_px[:, 0] * along_px[:, 1]) / length
@@ -85,7 +97,15 @@ def seen_width(
 
 
 def rasterise(body: CapsulesInPicture, size: tuple[int, int]) -> BodyPixels | None:
-    """The pixels that a body covers in a picture of (rows, columns); None where it is outside."""
+    """The pixels that a body covers.
+
+    Args:
+        body: The projected capsules.
+        size: Rows and columns of the picture.
+
+    Returns:
+        The covered part of the picture; None where the body is outside.
+    """
     low = np.floor((body.ends_px - body.radius_px[:, :, None]).min(axis=1)).astype(int)
     high = np.ceil((body.ends_px + body.radius_px[:, :, None]).max(axis=1)).astype(int) + 1
     last = np.array([size[1], size[0]])
@@ -114,7 +134,14 @@ def rasterise(body: CapsulesInPicture, size: tuple[int, int]) -> BodyPixels | No
 
 
 def blend(picture: np.ndarray, seen: BodyPixels, colour: np.ndarray, alpha: np.ndarray | float = 1.0) -> None:
-    """Paints a body of a colour, or of one of each pixel, 0 to 1, into a picture (row, column, 3) uint8."""
+    """Paints a body into a picture, in place.
+
+    Args:
+        picture: Picture (row, column, 3), uint8.
+        seen: The pixels of the body.
+        colour: Colour (3,) of the body, or of each pixel, 0 to 1.
+        alpha: Opacity of the body, or of each pixel.
+    """
     shown = picture[seen.rows, seen.columns]
     below = shown.astype(np.float32)
     shaded = seen.light[:, :, None] * (255.0 * colour)
@@ -149,7 +176,15 @@ def _interpolated(ends: Float[Array, "2"], share: Float[Array, "row column"]) ->
 def face_capsules(
     joints_m: Float[np.ndarray, "time 22 3"], height_m: float
 ) -> tuple[Float[np.ndarray, "time 2 2 3"], Float[np.ndarray, "2 2"]]:
-    """Ends and radii in metres of the face and of its nose."""
+    """Capsules of the face and its nose.
+
+    Args:
+        joints_m: Joints (time, 22, 3) in metres.
+        height_m: Body height in metres.
+
+    Returns:
+        Ends (time, 2, 2, 3) and radii (2, 2) in metres.
+    """
     ahead, up = head_axes(joints_m)
     place_m = _FACE_M * scale_of(height_m)
     head = joints_m[:, None, None, joint("head")]
@@ -160,10 +195,13 @@ def face_capsules(
 def head_axes(
     joints_m: Float[np.ndarray, "time 22 3"],
 ) -> tuple[Float[np.ndarray, "time 3"], Float[np.ndarray, "time 3"]]:
-    """Unit vectors to where the head faces and to its crown.
+    """Unit vectors (time, 3) towards the front and the crown of the head.
 
-    The 22 joints hold no rotation of the head. But the head's joint is a little in front of the neck's, so half of a
-    turn of the head and half of a nod move it relative to the chest, which gives the whole.
+    The 22 joints contain no rotation of the head. But the head joint is a little in front of the neck joint, so half of
+    a turn and half of a nod of the head move it relative to the chest, from which the whole rotation is estimated.
+
+    Args:
+        joints_m: Joints (time, 22, 3) in metres.
     """
     left = _unit(joints_m[:, joint("left_collar")] - joints_m[:, joint("right_collar")])
     up = (joints_m[:, joint("left_collar")] + joints_m[:, joint("right_collar")]) / 2 - joints_m[:, joint("spine3")]

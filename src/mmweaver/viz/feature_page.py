@@ -27,7 +27,7 @@ from mmweaver.viz.theme import evenly_spaced, label_axes, page
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-FEATURES = ("rd", "ra", "re", "drai", "micro_doppler", "points")  # names as `RadarDataset` has them
+FEATURES = ("rd", "ra", "re", "drai", "micro_doppler", "points")  # named as in `RadarDataset`
 OVER_TIME = "micro_doppler"  # one panel of all frames
 HEIGHT = {"ra": 0.58, "points": 0.56, "re": 1.28}  # of a panel relative to its width, where axes are in equal metres
 MAX_FRAMES = 8
@@ -35,7 +35,15 @@ PANEL_INCH, LEFT_INCH, RIGHT_INCH, TOP_INCH, GAP_INCH = 2.9, 0.64, 1.1, 0.9, 0.8
 
 
 def features_of(cube: RadarCube, names: Sequence[str] | None) -> list[str]:
-    """The features that are drawn; by default all that the array resolves. Raises InputError for unknown names."""
+    """The features to draw.
+
+    Args:
+        cube: The cube.
+        names: Requested features; by default all that the array resolves.
+
+    Raises:
+        InputError: For unknown names.
+    """
     if names is None:
         return [name for name in FEATURES if name != "re" or resolves_elevation(cube.config)]
     for name in names:
@@ -45,7 +53,15 @@ def features_of(cube: RadarCube, names: Sequence[str] | None) -> list[str]:
 
 
 def frames_of(cube: RadarCube, frames: Sequence[int] | None) -> list[int]:
-    """The frames that are drawn; by default four, evenly spaced. Raises InputError for frames that there are not."""
+    """The frames to draw.
+
+    Args:
+        cube: The cube.
+        frames: Requested frames; by default four, evenly spaced.
+
+    Raises:
+        InputError: For too many frames, or frames that do not exist.
+    """
     if frames is None:
         return evenly_spaced(len(cube.values), 4).tolist()
     if not 1 <= len(frames) <= MAX_FRAMES:
@@ -59,7 +75,15 @@ def frames_of(cube: RadarCube, frames: Sequence[int] | None) -> list[int]:
 def draw_features(
     path: Path, view: FigureData, features: Sequence[str], frames: Sequence[int], *, moving: bool = False
 ) -> None:
-    """Writes a PNG: a row for each feature, a column for each frame; `moving` removes each frame's mean chirp."""
+    """Writes a PNG with a row per feature and a column per frame.
+
+    Args:
+        path: The PNG.
+        view: The data to show.
+        features: Names of the features.
+        frames: Frame numbers.
+        moving: Whether the mean chirp of each frame is removed.
+    """
     step = PANEL_INCH + GAP_INCH
     tall = [PANEL_INCH * HEIGHT.get(name, 1.0) for name in features]
     width, height = LEFT_INCH + len(frames) * step + RIGHT_INCH, TOP_INCH + sum(tall) + GAP_INCH * len(tall)
@@ -102,7 +126,7 @@ def _summed(scale: PowerScale, cells: int) -> PowerScale:
 
 
 def _maps(name: str, chosen: FigureData, moving: bool) -> np.ndarray:
-    """A feature's decibels of each chosen frame."""
+    """A feature in decibels, for each selected frame."""
     if name == "drai":
         return 10 * np.log10(np.maximum(dynamic_range_angle(chosen.cube) * chosen.scale.factor, 1e-30))
     feature = {"rd": range_doppler_db, "ra": range_azimuth_db, "re": range_elevation_db}[name]

@@ -1,4 +1,4 @@
-"""FigureData: everything the pictures show, with power maps computed once."""
+"""FigureData: the data of all pictures, with power maps computed once."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -26,9 +26,9 @@ from mmweaver.viz.power_scale import PowerScale
 from mmweaver.viz.theme import evenly_spaced
 
 MAX_FRAMES = 100  # longer sequences are thinned out
-SLOW_OVER_NOISE = 10.0  # power of what changes from frame to frame over the noise
-SLOW_OVER_FAST = 316.0  # and over movement within frames: 25 dB (a walk has -7 to 14, waving 19, standing 38)
-BELOW_FLOOR_M = 0.15  # points deeper below the floor are no echoes of anything that stands there
+SLOW_OVER_NOISE = 10.0  # minimum power of changes between frames over the noise
+SLOW_OVER_FAST = 316.0  # and over motion within frames: 25 dB (a walk has -7 to 14, waving 19, standing 38)
+BELOW_FLOOR_M = 0.15  # points deeper below the floor are multipath or noise
 Power = Float[Array, "frame range column"]
 RangeAngle = Float[Array, "range column"]
 Raster = Float[Array, "ahead aside"]
@@ -38,7 +38,7 @@ Raster = Float[Array, "ahead aside"]
 class FigureData:
     """A cube and its points; photo and poses for a generated signal, none for a recording.
 
-    `poses` hold each person's joints at the cube's frames, `motions` the same people densely in time.
+    `poses` contain each person's joints at the cube's frames, `motions` the same people densely in time.
     """
 
     title: str
@@ -60,18 +60,18 @@ class FigureData:
 
     @property
     def heading(self) -> str:
-        """The title, with the number of shown frames if not all."""
+        """The title, with the number of shown frames if not all are shown."""
         count = len(self.cube.grid.frame_time_s)
         return self.title if count == len(self.frames) else f"{self.title}   {len(self.frames)} of {count} frames shown"
 
     @cached_property
     def shown_points(self) -> PointCloud:
-        """The points of the frames that are shown."""
+        """The points of the shown frames."""
         return self.points.select(np.isin(self.points.frame, self.frames))
 
     @cached_property
     def shown_poses(self) -> tuple[PoseSequence, ...]:
-        """The poses at the frames that are shown."""
+        """The poses at the shown frames."""
         return tuple(
             replace(pose, time_s=pose.time_s[self.frames], joints_m=pose.joints_m[self.frames]) for pose in self.poses
         )
@@ -83,7 +83,7 @@ class FigureData:
 
     @cached_property
     def _moving(self) -> RadarCube:
-        """Less each frame's mean chirp; where movement is slow, less the mean of the frames."""
+        """The cube without the mean chirp of each frame; for slow motion, without the mean over frames."""
         return remove_static(self._shown, "mean_frame" if self.is_slow else "mean_chirp")
 
     @property
@@ -93,7 +93,7 @@ class FigureData:
 
     @cached_property
     def is_slow(self) -> bool:
-        """Whether movement shows from frame to frame only: too few loops a frame, or somebody who just breathes."""
+        """Whether motion is visible between frames only: too few loops per frame, or a person who only breathes."""
         if len(self.cube.values) < MIN_FRAMES:
             return False
         if self.cube.config.num_loops < MIN_HANN_LOOPS:
@@ -108,7 +108,7 @@ class FigureData:
 
     @cached_property
     def _noise(self) -> float | None:
-        """Noise power of a cell; where a frame has one loop, the median over range of what changes over frames."""
+        """Noise power per cell; with one loop per frame, the median over range of the changes between frames."""
         found = noise_power(self._shown)
         if found is None and len(self.cube.values) > 1:
             still = zero_doppler(self._shown)
@@ -117,12 +117,12 @@ class FigureData:
 
     @cached_property
     def scale(self) -> PowerScale:
-        """The decibels of every picture of this cube."""
+        """The scale of decibels of every picture of this cube."""
         return PowerScale.of(float(self.range_doppler.max(initial=0.0)), self._noise, self.cube.scale)
 
     @cached_property
     def micro_doppler(self) -> MicroDoppler:
-        """Spectrogram over the chirps of each frame, clutter removed, of the strongest range bin at each time."""
+        """Spectrogram over the chirps of each frame without clutter, of the strongest range bin at each time."""
         return micro_doppler_of_cube(self._moving)
 
     @cached_property
@@ -132,24 +132,24 @@ class FigureData:
 
     @cached_property
     def slow_cells(self) -> list[SlowTimeCell]:
-        """The range bins that move most over the frames."""
+        """The range bins with the strongest motion across frames."""
         return moving_cells(self.cube)
 
     @property
     def is_below_floor(self) -> Bool[Array, " point"]:
-        """Of the shown points: multipath over the floor, or noise, of a radar whose floor is known."""
+        """Mask of the shown points below the floor: multipath over the floor, or noise."""
         if self.aligned is None or not has_elevation(self.cube.config):
             return np.zeros(len(self.shown_points.frame), bool)
         return self.shown_points.z_m < self.aligned.floor_z_m - BELOW_FLOOR_M
 
     @cached_property
     def range_doppler(self) -> Power:
-        """Power (frame, range, doppler), static clutter included."""
+        """Power (frame, range, doppler) with static clutter."""
         return range_doppler_power(self._shown)
 
     @cached_property
     def range_doppler_moving(self) -> Power:
-        """Power (frame, range, doppler), clutter removed."""
+        """Power (frame, range, doppler) without clutter."""
         return range_doppler_power(self._moving)
 
     @cached_property
@@ -162,46 +162,46 @@ class FigureData:
 
     @cached_property
     def range_azimuth(self) -> Power:
-        """Power (frame, range, azimuth), static clutter included."""
+        """Power (frame, range, azimuth) with static clutter."""
         return range_azimuth_power(self._shown, self.azimuth_rad)
 
     @cached_property
     def range_azimuth_moving(self) -> Power:
-        """Power (frame, range, azimuth), clutter removed."""
+        """Power (frame, range, azimuth) without clutter."""
         return range_azimuth_power(self._moving, self.azimuth_rad)
 
     @cached_property
     def range_elevation_moving(self) -> Power:
-        """Power (frame, range, elevation), clutter removed."""
+        """Power (frame, range, elevation) without clutter."""
         return range_elevation_power(self._moving, self.elevation_rad)
 
     @cached_property
     def most_active_frame(self) -> int:
-        """Index into `frames` of the one with the most clutter-removed power."""
+        """Index into `frames` of the frame with the most power without clutter."""
         return int(np.argmax(self.range_doppler_moving.sum(axis=(1, 2))))
 
     @property
     def range_edges_m(self) -> tuple[float, float]:
-        """Outer edges of the first and the last range bin."""
+        """Outer edges of the first and the last range bin in metres."""
         range_m = self.cube.grid.range_m
         half = self.cube.config.range_resolution_m / 2
         return float(range_m[0]) - half, float(range_m[-1]) + half
 
     @property
     def velocity_edges_mps(self) -> tuple[float, float]:
-        """Outer edges of the first and the last Doppler bin."""
+        """Outer edges of the first and the last Doppler bin in m/s."""
         velocity_mps = self.cube.grid.radial_velocity_mps
         half = self.cube.config.velocity_resolution_mps / 2
         return float(velocity_mps[0]) - half, float(velocity_mps[-1]) + half
 
     @property
     def frame_step_s(self) -> float:
-        """Time from one shown frame to the next."""
+        """Time from one shown frame to the next in seconds."""
         return float(self.time_s[1] - self.time_s[0]) if len(self.time_s) > 1 else self.cube.config.frame_period_s
 
     @property
     def time_edges_s(self) -> tuple[float, float]:
-        """Start of the first and end of the last frame."""
+        """Start of the first and end of the last frame in seconds."""
         return float(self.time_s[0]), float(self.time_s[-1]) + self.frame_step_s
 
 
@@ -209,8 +209,8 @@ class FigureData:
 class Fan:
     """A Cartesian raster in metres for (range, angle) maps; nan outside the fan.
 
-    Angle 0 looks along the raster's first axis given as `ahead`, positive angles towards `aside`. `extent` is
-    (aside from, aside to, ahead from, ahead to) in metres.
+    Angle 0 points along `ahead`, positive angles towards `aside`. `extent` is (aside from, aside to, ahead from, ahead
+    to) in metres.
     """
 
     range_index: Int[Array, "ahead aside"]
@@ -220,7 +220,13 @@ class Fan:
 
     @classmethod
     def over(cls, range_m: Array, angle_rad: Array, size: int = 260) -> "Fan":
-        """The smallest raster that contains the fan of these ranges and increasing angles."""
+        """The smallest raster that contains a fan.
+
+        Args:
+            range_m: Ranges (range,), evenly spaced.
+            angle_rad: Angles (angle,), increasing.
+            size: Number of rows.
+        """
         step_m = float(range_m[1] - range_m[0]) if len(range_m) > 1 else 1.0
         reach_m = float(range_m[-1]) + step_m / 2
         ahead_m = np.linspace(0.0, reach_m, size)[:, None]
@@ -245,5 +251,5 @@ class Fan:
         )
 
     def lay(self, values: RangeAngle) -> Raster:
-        """(range, angle) -> (ahead, aside)."""
+        """Resamples a map (range, angle) to the raster (ahead, aside)."""
         return np.where(self.inside, values[self.range_index, self.angle_index], np.nan)

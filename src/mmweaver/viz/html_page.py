@@ -28,7 +28,14 @@ padding:8px;box-sizing:border-box;overflow:auto}} #page .player{{flex:1}}</style
 
 @cache
 def page_file(name: str) -> bytes:
-    """A file of the page, as built into the package. Raises InputError where the installation lacks it."""
+    """A file of the page, as built into the package.
+
+    Args:
+        name: Name of the file.
+
+    Raises:
+        InputError: If the installation lacks it.
+    """
     file = Path(__file__).with_name("page") / name
     if not file.is_file():
         raise InputError(f"this installation lacks the page's file {name}; install mmweaver anew")
@@ -36,7 +43,13 @@ def page_file(name: str) -> bytes:
 
 
 def offline_page(sequence: Playback, room: Playback | None, title: str) -> str:
-    """The page as text, with script and data inside."""
+    """The page as text, with script and data embedded.
+
+    Args:
+        sequence: The sequence.
+        room: Its room, if known.
+        title: Title of the page.
+    """
     parts = {"sequence": sequence, "room": room}
     data = "\n".join(
         f'<script type="application/octet-stream" id="{name}">'
@@ -49,6 +62,16 @@ def offline_page(sequence: Playback, room: Playback | None, title: str) -> str:
 
 
 def write_page(path: Path, sequence: Playback, room: Playback | None, title: str) -> None:
-    """Writes the page, or nothing. Raises InputError where it cannot be written."""
+    """Writes the page atomically.
+
+    Args:
+        path: The HTML file.
+        sequence: The sequence.
+        room: Its room, if known.
+        title: Title of the page.
+
+    Raises:
+        InputError: If it cannot be written.
+    """
     with atomic_file(path) as temporary:
         temporary.write_text(offline_page(sequence, room, title), encoding="utf-8")

@@ -25,18 +25,32 @@ AZIMUTH_RAD = np.radians(35.0)  # azimuth of the viewpoint relative to the radar
 TILT = 0.18  # upward shift per metre of distance
 PX_PER_M = 110.0
 BELOW_M, ABOVE_M = 0.25, 0.12  # shown below the floor and above the highest point
-LABEL_M, LIMB_M = 0.09, 0.08  # height of the seconds' line, and a limb's thickness with a margin
-MIN_HIPS_M = 0.1  # distance of the hips on the floor plan from which a facing is read
-SHADOW_HEIGHT_M = 0.2  # limbs so high above the floor darken it by a third of what they do on it
+LABEL_M, LIMB_M = 0.09, 0.08  # height of the time labels, and thickness of a limb with a margin
+MIN_HIPS_M = 0.1  # minimum distance of the hips on the floor plan that determines a facing
+SHADOW_HEIGHT_M = 0.2  # height at which a limb's shadow is a third of that on the floor
 
 
 def draw_strip(pose: PoseSequence, path: Path, *, title: str = "", count: int = 10) -> None:
-    """Writes a picture (png, pdf, svg by the file's name) of `count` instants of a motion."""
+    """Writes a picture of evenly spaced instants of a motion.
+
+    Args:
+        pose: The motion.
+        path: The picture: png, pdf or svg, by its suffix.
+        title: Title of the strip.
+        count: Number of instants.
+    """
     draw_sheet([(title, pose)], path, columns=1, count=count)
 
 
 def draw_sheet(motions: list[tuple[str, PoseSequence]], path: Path, *, columns: int = 3, count: int = 6) -> None:
-    """Writes one picture of several motions, a strip each."""
+    """Writes one picture of several motions, a strip each.
+
+    Args:
+        motions: Titles and motions.
+        path: The picture: png, pdf or svg, by its suffix.
+        columns: Number of columns.
+        count: Number of instants per motion.
+    """
     import matplotlib.pyplot as plt
 
     rows = -(-len(motions) // columns)
@@ -55,7 +69,7 @@ def draw_sheet(motions: list[tuple[str, PoseSequence]], path: Path, *, columns: 
 
 
 def _draw(axes: "Axes", pose: PoseSequence, count: int) -> None:
-    """Draws each instant at its own place along the strip, seen half from the front; locomotion is removed."""
+    """Draws each instant at its own place along the strip, seen obliquely from the front; locomotion is removed."""
     pose = _facing_the_radar(pose)
     instants = np.linspace(0, len(pose.time_s) - 1, count).round().astype(int)
     floor_m = float(np.percentile(pose.joints_m[..., 2].min(axis=1), 5))
@@ -78,10 +92,14 @@ def _draw(axes: "Axes", pose: PoseSequence, count: int) -> None:
 
 
 def frame_of(places_m: list[Float[np.ndarray, "capsule 2 2"]]) -> tuple[float, float, float, float, float]:
-    """Distance between instants, left and right edge, depth below the floor and top of a strip of bodies, in metres.
+    """Dimensions of a strip of bodies.
 
-    `places_m` are the capsules' ends in the picture, from each body's place on the floor. Bodies that lie reach far to
-    one side and below their place; the seconds stand below them.
+    Args:
+        places_m: Ends (capsule, 2, 2) of the capsules in the picture, relative to each body's place on the floor. Lying
+            bodies extend far to one side and below their place; the time labels are below them.
+
+    Returns:
+        Distance between instants, left and right edge, depth below the floor and top, in metres.
     """
     ends = np.stack([place.reshape(-1, 2) for place in places_m])
     reach = max(SPACING_M, 1.05 * float(np.ptp(ends[..., 0], axis=1).max()) + 0.1)
@@ -92,10 +110,10 @@ def frame_of(places_m: list[Float[np.ndarray, "capsule 2 2"]]) -> tuple[float, f
 
 
 def _facing_the_radar(pose: PoseSequence) -> PoseSequence:
-    """The motion turned about the vertical to begin facing -y: a body seen from its side hides what it does."""
+    """The motion rotated about the vertical to face -y at first, since a side view hides what a body does."""
     across = (pose.joints_m[0, joint("left_hip")] - pose.joints_m[0, joint("right_hip")])[:2]
     length_m = float(np.hypot(*across))
-    if length_m < MIN_HIPS_M:  # lying on a side: the hips do not say where it faces
+    if length_m < MIN_HIPS_M:  # lying on a side: the hips do not determine the facing
         return pose
     cos, sin = across / length_m
     turn = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
@@ -128,7 +146,7 @@ def _darken(
     radius_m: Float[np.ndarray, "capsule 2"],
     origin_px: Float[np.ndarray, "2"],
 ) -> None:
-    """A soft shadow on the floor below what is near it."""
+    """A soft shadow on the floor below limbs near it."""
     row = np.arange(picture.shape[0])
     band = np.flatnonzero(np.abs(row - origin_px[1]) < 1.2 * TILT * PX_PER_M + 6)
     columns = np.arange(picture.shape[1])
@@ -172,7 +190,14 @@ LEFT, RIGHT, TRUNK, BEHIND = "#2b78b8", "#c2431c", "#444a52", "#b9bec6"
 def draw_pose_strips(
     strips: Sequence[tuple[str, Joints, Joints | None]], path: Path, *, frame_rate_hz: float, count: int = 8
 ) -> None:
-    """Writes a picture of a strip for each (title, joints, joints behind or None); both are set on their pelvises."""
+    """Writes a picture with one strip per motion, each optionally over another motion; both are aligned at the pelvis.
+
+    Args:
+        strips: Title, joints, and joints to draw behind or None, for each strip.
+        path: The picture: png, pdf or svg, by its suffix.
+        frame_rate_hz: Frames per second of the joints.
+        count: Number of instants.
+    """
     import matplotlib.pyplot as plt
 
     with plt.rc_context(STYLE):

@@ -9,7 +9,15 @@ from mmweaver.viz.wire import pack
 
 
 def player_widget(sequence: Playback, room: Playback | None) -> Any:
-    """An anywidget.AnyWidget that plays a sequence. Raises InputError where the extra 'notebook' is not installed."""
+    """An anywidget.AnyWidget that plays a sequence.
+
+    Args:
+        sequence: The sequence.
+        room: Its room, if known.
+
+    Raises:
+        InputError: If the extra 'notebook' is not installed.
+    """
     need("notebook", "show()", "anywidget")
     import anywidget
     import traitlets

@@ -1,4 +1,4 @@
-"""The panels of pages: one function per kind of picture. Panels of power share the scale of the whole page."""
+"""Panels of pages: one function per kind of picture. Panels of power share the scale of the whole page."""
 
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -35,10 +35,10 @@ SHOWN_POSES = 7  # poses whose joints are drawn from the side, and bodies of one
 SHOWN_POSES_OF_MANY = 3  # bodies per person of several people
 PHOTO_WIDTH_PX = 720  # about the width of the photo on the page
 STATIC_COLOUR, MOVING_COLOUR, GHOST_COLOUR = "#8a5a00", "#0b7da3", "#b6bcc4"
-NARROWEST_MPS, MOVING_DB = 0.02, 50.0  # least half width of a velocity axis over frames, and what is shown below a peak
+NARROWEST_MPS, MOVING_DB = 0.02, 50.0  # minimum half width of a slow-time velocity axis, and shown range below a peak
 DISPLACEMENT_SPAN, DISPLACEMENT_NAME = 1.15, 0.22
-LEGEND_SHARE = 0.3  # of the scale, above it: no curve runs through the names
-MIN_SPEED_MPS = 0.1  # of the colours of points
+LEGEND_SHARE = 0.3  # space above the scale for the legend, so that no curve crosses it
+MIN_SPEED_MPS = 0.1  # minimum span of the colours of points
 VELOCITY = "radial velocity (m/s), away +"
 Curves = Iterable[tuple[np.ndarray, np.ndarray]]
 
@@ -49,7 +49,7 @@ def power_bar(axes: "Axes", view: FigureData) -> None:
 
 
 def moving_words(view: FigureData) -> str:
-    """What is left in panels of movement."""
+    """Description of panels of motion."""
     return "change over frames" if view.is_slow else "clutter removed"
 
 
@@ -62,11 +62,11 @@ def _truth(
     style: str = "-",
     on_white: bool = False,
 ) -> None:
-    """Draws what is known of each person in their colour, and says what it is."""
+    """Draws the ground truth of each person in their colour, with a note."""
     for index, person in enumerate(people):
         colour = person_colour(index, len(people), on_white=on_white)
         for x, y in curves(person):
-            is_path = style == "->"  # with a mark at its end
+            is_path = style == "->"  # with a mark at the end
             axes.plot(
                 x,
                 y,
@@ -82,7 +82,7 @@ def _truth(
 
 # over time ----------------------------------------------------------------------------------------------------------
 def draw_range_time(axes: "Axes", view: FigureData) -> None:
-    """Power of movement over time and range, with the ground-truth extent of the joints."""
+    """Power of motion over time and range, with the ground-truth extent of the joints."""
     power = view.range_doppler_moving.max(axis=2).T
     view.scale.draw(axes, view.scale.decibels(power), (*view.time_edges_s, *view.range_edges_m))
     middle_s = view.time_s + view.frame_step_s / 2
@@ -96,7 +96,7 @@ def draw_range_time(axes: "Axes", view: FigureData) -> None:
 
 
 def draw_micro_doppler(axes: "Axes", view: FigureData) -> None:
-    """The spectrogram over chirps: the strongest range at each time and radial velocity, with that of the pelvis."""
+    """Spectrogram over chirps: the strongest range at each time and radial velocity, with the pelvis' ground truth."""
     draw_spectrogram(axes, view.scale, view.micro_doppler, view.time_edges_s)
 
     def curves(motion: PoseSequence) -> Curves:
@@ -110,7 +110,14 @@ def draw_micro_doppler(axes: "Axes", view: FigureData) -> None:
 
 
 def draw_spectrogram(axes: "Axes", scale: PowerScale, found: MicroDoppler, time_edges_s: tuple[float, float]) -> None:
-    """A spectrogram in columns of equal time: each spectrum holds until the next, through the pause between frames."""
+    """Draws a spectrogram in columns of equal time; each spectrum is held until the next, across pauses between frames.
+
+    Args:
+        axes: Where to draw.
+        scale: Scale of the power.
+        found: The spectrogram.
+        time_edges_s: Start and end of the time axis.
+    """
     column_s = np.linspace(*time_edges_s, min(max(2 * len(found.time_s), 200), 1200), endpoint=False)
     half_s = (found.time_s[0] - time_edges_s[0]) if len(found.time_s) else 0.0
     shown = np.clip(np.searchsorted(found.time_s - half_s, column_s, side="right") - 1, 0, len(found.time_s) - 1)
@@ -121,7 +128,13 @@ def draw_spectrogram(axes: "Axes", scale: PowerScale, found: MicroDoppler, time_
 
 
 def draw_displacement(axes: "Axes", time_s: np.ndarray, cells: Sequence[SlowTimeCell]) -> None:
-    """Displacement over time of the range bins that move most from frame to frame."""
+    """Displacement over time of the range bins with the strongest motion across frames.
+
+    Args:
+        axes: Where to draw.
+        time_s: Times (frame,) in seconds.
+        cells: The range bins.
+    """
     reach_mm = max([1e-3, *(1e3 * float(np.abs(cell.displacement_m).max()) for cell in cells)]) * DISPLACEMENT_SPAN
     for cell, colour in zip(cells, PEOPLE_ON_WHITE, strict=False):
         label = f"at {cell.range_m:.2f} m"
@@ -136,7 +149,7 @@ def draw_displacement(axes: "Axes", time_s: np.ndarray, cells: Sequence[SlowTime
 
 # maps ---------------------------------------------------------------------------------------------------------------
 def draw_range_doppler(axes: "Axes", view: FigureData) -> None:
-    """Power over range and radial velocity in the most active frame, static clutter included."""
+    """Power over range and radial velocity in the most active frame, with static clutter."""
     at = view.most_active_frame
     power_db = view.scale.decibels(view.range_doppler[at])
     view.scale.draw(axes, power_db, (*view.velocity_edges_mps, *view.range_edges_m))
@@ -154,14 +167,14 @@ def draw_range_doppler(axes: "Axes", view: FigureData) -> None:
 def draw_slow_doppler(
     axes: "Axes", scale: PowerScale, power: np.ndarray, velocity_mps: np.ndarray, range_edges_m: tuple[float, float]
 ) -> None:
-    """Power over range and slow-time velocity of all frames; the middle of the axis, where the movement is.
+    """Power over range and slow-time velocity of all frames; the velocity axis is cropped to the motion.
 
     Args:
-        axes: to draw into.
-        scale: of the power.
-        power: (range, doppler) in units of the cube squared.
-        velocity_mps: (doppler,).
-        range_edges_m: of the first and the last range bin.
+        axes: Where to draw.
+        scale: Scale of the power.
+        power: Power (range, doppler) in squared units of the cube.
+        velocity_mps: Velocities (doppler,) in m/s.
+        range_edges_m: Outer edges of the first and the last range bin in metres.
     """
     along_db = scale.decibels(power.max(axis=0))
     noise_db = scale.low_db if scale.noise_db is None else scale.noise_db
@@ -174,7 +187,7 @@ def draw_slow_doppler(
 
 
 def draw_elevation(axes: "Axes", view: FigureData) -> None:
-    """Power of movement from the side, the strongest of the frames, for arrays that resolve elevation."""
+    """Power of motion from the side, maximum over frames, for arrays that resolve elevation."""
     fan = Fan.over(view.cube.grid.range_m, view.elevation_rad)
     low, high, _, far = fan.extent
     power = fan.lay(view.range_elevation_moving.max(axis=0)).T
@@ -190,12 +203,12 @@ def draw_elevation(axes: "Axes", view: FigureData) -> None:
 
 
 def draw_azimuth_with_clutter(axes: "Axes", view: FigureData) -> None:
-    """Power from above with static clutter, mean of the frames."""
+    """Power from above with static clutter, mean over frames."""
     _draw_azimuth(axes, view, view.range_azimuth.mean(axis=0), "static clutter included")
 
 
 def draw_azimuth_moving(axes: "Axes", view: FigureData) -> None:
-    """Power of movement from above, the strongest of the frames, with the path of the pelvis."""
+    """Power of motion from above, maximum over frames, with the path of the pelvis."""
     _draw_azimuth(axes, view, view.range_azimuth_moving.max(axis=0), moving_words(view))
 
 
@@ -208,27 +221,27 @@ def _draw_azimuth(axes: "Axes", view: FigureData, power: np.ndarray, what: str) 
 
 
 def _path(person: PoseSequence) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Where the pelvis goes, from above."""
+    """Path of the pelvis from above."""
     x, y, _ = person.joints_m[:, joint("pelvis")].T
     return [(x, y)]
 
 
 # profiles -----------------------------------------------------------------------------------------------------------
 def draw_range_profile(axes: "Axes", view: FigureData) -> None:
-    """Power over range: the strongest radial velocity, with and without static clutter, and the noise."""
+    """Power over range, maximum over radial velocity, with and without static clutter, and the noise."""
     whole, moving = (power.max(axis=(0, 2)) for power in (view.range_doppler, view.range_doppler_moving))
     _draw_profiles(axes, view, view.cube.grid.range_m, moving, whole)
     label_axes(axes, "Range profile, strongest velocity", "range (m)", view.scale.unit, grid=True)
 
 
 def draw_velocity_profile(axes: "Axes", view: FigureData) -> None:
-    """Power over radial velocity in the strongest range bin of each, clutter removed."""
+    """Power over radial velocity, maximum over range, without clutter."""
     _draw_profiles(axes, view, view.cube.grid.radial_velocity_mps, view.range_doppler_moving.max(axis=(0, 1)))
     label_axes(axes, "Doppler profile, strongest range", VELOCITY, view.scale.unit, grid=True)
 
 
 def draw_azimuth_profile(axes: "Axes", view: FigureData) -> None:
-    """Power over azimuth at the strongest range of each."""
+    """Power over azimuth, maximum over range."""
     whole, moving = (power.max(axis=(0, 1)) for power in (view.range_azimuth, view.range_azimuth_moving))
     _draw_profiles(axes, view, np.degrees(view.azimuth_rad), moving, whole)
     label_axes(axes, "Azimuth profile, strongest range", "azimuth (degrees), right +", view.scale.unit, grid=True)
@@ -263,7 +276,7 @@ def draw_points_top(axes: "Axes", view: FigureData) -> None:
 
 
 def draw_points_side(axes: "Axes", view: FigureData) -> None:
-    """All detections from the side; over time or velocity, where the array has no elevation."""
+    """All detections from the side; over time or velocity if the array has no elevation."""
     points, reach_m = view.shown_points, view.range_edges_m[1]
     if not has_elevation(view.cube.config):
         if view.is_single:
@@ -298,7 +311,7 @@ def velocity_bar(axes: "Axes", view: FigureData) -> None:
 
 
 def _velocities(view: FigureData) -> "ScalarMappable":
-    """Colours span the speeds of moving points but for the fastest 5 %, which are mostly noise."""
+    """Colours span the speeds of moving points except for the fastest 5 %, which are mostly noise."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
@@ -324,7 +337,7 @@ def _scatter(axes: "Axes", view: FigureData, across_m: np.ndarray, up_m: np.ndar
 
 # photo --------------------------------------------------------------------------------------------------------------
 def draw_photo(axes: "Axes", view: FigureData) -> None:
-    """The photo with the bodies at several times; what furniture occludes is hidden but for a hint."""
+    """The photo with the bodies at several times; parts occluded by furniture are faint."""
     import matplotlib
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import ListedColormap, Normalize, to_rgb

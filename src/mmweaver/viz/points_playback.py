@@ -1,4 +1,4 @@
-"""A logged point cloud as the page plays it, with maps of the detections: a board's data port gives no more."""
+"""A logged point cloud for the playback page, with maps of the detections, as a board's data port gives no cube."""
 
 from typing import Any
 
@@ -9,12 +9,19 @@ from mmweaver.viz.sequence import MAX_FRAMES, Playback, as_bytes
 from mmweaver.viz.theme import evenly_spaced
 
 _RANGES, _VELOCITIES, _AZIMUTHS = 64, 33, 61
-_UNKNOWN_DB = 10.0  # of points without an SNR
-_MIN_FAR_M, _MIN_FAST_MPS = 1.0, 0.5  # ends of axes of still or near points
+_UNKNOWN_DB = 10.0  # for points without an SNR
+_MIN_FAR_M, _MIN_FAST_MPS = 1.0, 0.5  # minimum ends of the axes
 
 
 def point_log_playback(points: PointCloud, frame_period_s: float, radar: str, meta: dict[str, Any]) -> Playback:
-    """The arrays of `Playback`; a cell holds the SNR of its strongest point in decibels, 0 where there is none."""
+    """A point cloud as a `Playback`; a cell contains the SNR of its strongest point in decibels, 0 without points.
+
+    Args:
+        points: Points of all frames.
+        frame_period_s: Frame period in seconds.
+        radar: Name of the radar.
+        meta: Entries of the header.
+    """
     count = int(points.frame.max()) + 1 if len(points.frame) else 1
     shown = evenly_spaced(count, MAX_FRAMES)
     place_of = np.full(count, -1)
@@ -76,7 +83,7 @@ def point_log_playback(points: PointCloud, frame_period_s: float, radar: str, me
 
 
 def _end(value: float, least: float) -> float:
-    """An axis' end a twentieth beyond the values."""
+    """End of an axis, 5 % beyond the values."""
     return max(1.05 * float(value), least)
 
 

@@ -1,4 +1,4 @@
-"""One scale of decibels for all pictures of a cube, so that an echo has the same colour in each, with its noise."""
+"""One scale of decibels, including the noise level, for all pictures of a cube: an echo has the same colour in each."""
 
 import math
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ Extent = tuple[float, float, float, float]  # left, right, bottom, top, in units
 BELOW_NOISE_DB = 5.0
 MIN_ABOVE_NOISE_DB = 40.0  # so that noise alone looks like noise
 MAX_SPAN_DB = 80.0
-WITHOUT_NOISE_DB = 60.0  # shown below the peak of a cube that holds no noise
+WITHOUT_NOISE_DB = 60.0  # shown below the peak of a cube without noise
 TICK_DB = 5.0
 
 
@@ -27,7 +27,7 @@ TICK_DB = 5.0
 class PowerScale:
     """Decibels from `low_db` to `high_db`: dBm at a receiver's port, or relative to a count of a recording.
 
-    `noise_db` is the noise power of a cell, None where the cube holds none.
+    `noise_db` is the noise power per cell, None for a cube without noise.
     """
 
     factor: float  # from the cube's power to mW, or 1
@@ -38,7 +38,13 @@ class PowerScale:
 
     @classmethod
     def of(cls, peak: float, noise: float | None, scale: float) -> "PowerScale":
-        """The scale that shows noise and peak, both in units of the cube squared; `scale` as `RadarCube.scale`."""
+        """The scale that shows noise and peak.
+
+        Args:
+            peak: Peak power in squared units of the cube.
+            noise: Noise power per cell in squared units of the cube, if known.
+            scale: Sqrt(mW) per unit of the cube, as `RadarCube.scale`.
+        """
         is_absolute = math.isfinite(scale) and scale > 0
         factor, unit = (scale**2, "dBm") if is_absolute else (1.0, "dB relative to one count")
         if not peak > 0:
@@ -55,12 +61,18 @@ class PowerScale:
         return cls(factor=factor, low_db=low_db, high_db=high_db, noise_db=noise_db, unit=unit)
 
     def decibels(self, power: Float[Array, "*any"]) -> Float[Array, "*any"]:
-        """Power in units of the cube squared as decibels, at least `low_db`; nan stays nan."""
+        """Power in squared units of the cube as decibels, at least `low_db`; nan stays nan."""
         least = 10 ** (self.low_db / 10) / self.factor
         return 10 * np.log10(np.maximum(np.asarray(power, np.float64), least) * self.factor)
 
     def draw(self, axes: "Axes", power_db: Float[Array, "y x"], extent: Extent) -> "AxesImage":
-        """Draws decibels (y, x), the first row at the bottom, each cell in one colour; the limits stay from then on."""
+        """Draws decibels (y, x), the first row at the bottom, each cell in one colour, with fixed limits.
+
+        Args:
+            axes: Where to draw.
+            power_db: Power (y, x) in dB.
+            extent: Left, right, bottom and top edge, in units of the axes.
+        """
         image = axes.imshow(
             power_db,
             origin="lower",

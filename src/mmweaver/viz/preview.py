@@ -1,8 +1,8 @@
 """preview.png: one page of radar maps and points with, where known, the photo and the ground truth.
 
-All panels of power share one scale of decibels (`viz.power_scale`). What has no meaning for a signal is replaced: a
-single frame has profiles in place of strips over time, slow movement is shown over frames, and only arrays that resolve
-elevation have a map of it.
+All panels of power share one scale of decibels (`viz.power_scale`). Panels without meaning for a signal are replaced: a
+single frame has profiles in place of strips over time, slow motion is shown over frames, and only arrays that resolve
+elevation have an elevation map.
 """
 
 from collections.abc import Callable
@@ -25,11 +25,11 @@ def draw_preview(view: FigureData, path: Path | None) -> "Figure":
     """Draws the page, 1600 pixels wide; 900 high with a photo, 700 without.
 
     Args:
-        view: what is shown.
-        path: PNG that is written; None writes none.
+        view: The data to show.
+        path: PNG to write; None writes no file.
 
     Returns:
-        The page as a figure of matplotlib.
+        The page as a matplotlib figure.
     """
     photo = view.aligned is not None
     with page(path, view.heading, 16.0, 9.0 if photo else 7.0) as figure:

@@ -1,4 +1,4 @@
-"""Pages of what a recording shows over time: slow-time Doppler and displacement, micro-Doppler, people's paths."""
+"""Pages of a recording over time: slow-time Doppler and displacement, micro-Doppler, people's paths."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -32,15 +32,15 @@ def draw_slow_time(
     cells: Sequence[SlowTimeCell],
     rates: dict[str, Rate | None],
 ) -> None:
-    """Range over slow-time velocity, displacement of the cells that move most over time, and its spectrum.
+    """Writes slow-time Doppler over range, displacement over time of the strongest cells, and its spectrum.
 
     Args:
-        path: the PNG.
-        title: of the page.
-        cube: the recording.
-        slow_doppler: power (range, doppler) of all frames and its velocities (doppler,), m/s.
-        cells: the range bins that move most.
-        rates: breathing and heart, where found.
+        path: The PNG.
+        title: Title of the page.
+        cube: The recording.
+        slow_doppler: Power (range, doppler) of all frames, and its velocities (doppler,) in m/s.
+        cells: The range bins with the strongest motion.
+        rates: Breathing and heart rate, where found.
     """
     doppler, velocity_mps = slow_doppler
     half_m = cube.config.range_resolution_m / 2
@@ -55,7 +55,7 @@ def draw_slow_time(
 
 
 def _draw_spectrum(axes: "Axes", period_s: float, cells: Sequence[SlowTimeCell], rates: dict[str, Rate | None]) -> None:
-    """Amplitude over frequency of the displacement of some cells, with the rates that are clear."""
+    """Amplitude spectrum of the displacement of some cells, with the reliable rates."""
     from scipy.signal import detrend
 
     top_db = FAINTEST_DB
@@ -79,7 +79,14 @@ def _draw_spectrum(axes: "Axes", period_s: float, cells: Sequence[SlowTimeCell],
 
 
 def draw_micro_doppler(path: Path, title: str, spectrogram: MicroDoppler, amplitude_scale: float) -> None:
-    """Radial velocity over time, static clutter removed; `amplitude_scale` as `RadarCube.scale`."""
+    """Writes radial velocity over time without static clutter.
+
+    Args:
+        path: The PNG.
+        title: Title of the page.
+        spectrogram: The spectrogram.
+        amplitude_scale: Sqrt(mW) per unit, as `RadarCube.scale`.
+    """
     (near_m, far_m), power, time_s = spectrogram.range_m, spectrogram.power, spectrogram.time_s
     scale = PowerScale.of(float(power.max()), float(np.median(power)), amplitude_scale)
     with page(path, title, 12.0, HEIGHT_INCH) as figure:
@@ -91,7 +98,14 @@ def draw_micro_doppler(path: Path, title: str, spectrogram: MicroDoppler, amplit
 
 
 def draw_people(path: Path, title: str, people: Sequence[PersonTrack], far_m: float) -> None:
-    """The paths of tracked people from above, and their distance over time."""
+    """Writes the paths of tracked people from above, and their distance over time.
+
+    Args:
+        path: The PNG.
+        title: Title of the page.
+        people: The tracks.
+        far_m: Farthest range in metres.
+    """
     with page(path, title, 12.0, HEIGHT_INCH) as figure:
         above, over_time = _panels(figure, 2)
         places_m = np.abs(np.concatenate([np.ones((1, 2)), *(person.place_m for person in people)]))

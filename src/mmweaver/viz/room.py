@@ -1,4 +1,4 @@
-"""A room as the page shows it: coloured points of the photo, surfaces, free floor, seats and landmarks."""
+"""A room for the playback page: coloured points of the photo, surfaces, free floor, seats and landmarks."""
 
 from typing import Any
 
@@ -17,11 +17,17 @@ _REFLECTORS = ("metal", "glass", "marble")
 def room_playback(
     scene: Scene, name: str, range_window_m: tuple[float, float], *, max_points: int = MAX_POINTS
 ) -> Playback:
-    """The room's header and arrays; `range_window_m` is the radar's.
+    """The header and arrays of a room.
 
     Arrays: `room_points` (point, 3) int16 in millimetres and `room_colours` (point, 3) bytes; `free_floor` (cell, 2)
-    float32, the x and y in metres of the free cells of the floor, and `standable` (cell,), 1 where the planner lets a
-    person of average height stand in sight of the radar.
+    float32, x and y in metres of the free cells of the floor, and `standable` (cell,), 1 where the planner allows a
+    person of average height to stand in view of the radar.
+
+    Args:
+        scene: The room.
+        name: Name of the room.
+        range_window_m: Nearest and farthest range of the radar.
+        max_points: Maximum number of points.
     """
     points_m = AlignedPhoto.of(scene).points_m
     measured = np.isfinite(points_m).all(axis=-1)
@@ -53,7 +59,7 @@ def room_playback(
 
 
 def _plane(plane: Plane) -> dict[str, Any]:
-    """Corners in order around the rectangle, and what it is made of."""
+    """Corners in order around the rectangle, and the material."""
     return {
         "kind": plane.kind,
         "material": plane.material,

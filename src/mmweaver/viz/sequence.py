@@ -1,4 +1,4 @@
-"""A generated or recorded sequence as the page plays it: maps on one absolute dB scale, points and bodies by frame."""
+"""A generated or recorded sequence for the playback page: maps on one absolute dB scale, points and bodies by frame."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -15,7 +15,7 @@ from mmweaver.signal.spectra import azimuth_axis_rad, range_azimuth_power, range
 from mmweaver.viz.theme import evenly_spaced
 
 MAX_FRAMES = 600  # longer sequences are thinned out
-BELOW_NOISE_DB = 6.0  # of the scale's lower end
+BELOW_NOISE_DB = 6.0  # lower end of the scale
 _NUM_AZIMUTHS = 81
 
 
@@ -42,7 +42,15 @@ def make_playback(
     *,
     scale_db: tuple[float, float] | None = None,
 ) -> Playback:
-    """A sequence as the page plays it; `meta` is the content of its meta.json, `scale_db` a scale to keep to."""
+    """A sequence as a `Playback`.
+
+    Args:
+        cube: The cube.
+        points: Points of all frames.
+        poses: Each person's joints at the cube's frames.
+        meta: Contents of its meta.json.
+        scale_db: Fixed ends of the scale; by default chosen for this sequence.
+    """
     count = len(cube.grid.frame_time_s)
     shown = evenly_spaced(count, MAX_FRAMES)
     time_s = cube.grid.frame_time_s[shown]
@@ -85,7 +93,13 @@ def make_playback(
 
 
 def as_bytes(power_db: Float[Array, "*shape"], low_db: float, high_db: float) -> UInt8[Array, "*shape"]:
-    """Decibels as bytes: 0 at `low_db` and below, 255 at `high_db` and above."""
+    """Decibels as bytes.
+
+    Args:
+        power_db: Power (...) in dB.
+        low_db: Level of byte 0 and below.
+        high_db: Level of byte 255 and above.
+    """
     share = (power_db - low_db) / (high_db - low_db)
     return (np.clip(share, 0, 1) * 255).round().astype(np.uint8)
 

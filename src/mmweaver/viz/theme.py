@@ -1,4 +1,4 @@
-"""Common style of all figures: colour maps, ticks, colour bars, notes, and how a page is written."""
+"""Common style of all figures: colour maps, ticks, colour bars, notes, and the writing of pages."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -19,7 +19,7 @@ GROUND_TRUTH = "#7fe3ff"  # colour of the skeleton drawn over radar maps
 # Colours of several people: bright over power maps and photos, dark on white.
 PEOPLE = (GROUND_TRUTH, "#8dff7a", "#ff9df2", "#ffffff", "#ffd24d", "#b3a6ff", "#5dffd0", "#ff8f70")
 PEOPLE_ON_WHITE = ("#0b7da3", "#1f8a0f", "#b02fa0", "#5b6168", "#a07400", "#5b48c9", "#00856a", "#c2431c")
-CLEARANCE = 0.045  # of a colour bar, that its mark keeps from ticks
+CLEARANCE = 0.045  # distance between mark and ticks, as a share of a colour bar
 _BEYOND_FONT = 0x2E80
 _CORNERS = {"lower right": (0.98, 0.02), "upper right": (0.98, 0.97), "upper left": (0.02, 0.97)}
 
@@ -61,7 +61,15 @@ STYLE: Any = {
 
 
 def label_axes(axes: "Axes", title: str, x_label: str, y_label: str, *, grid: bool = False) -> None:
-    """Title at the upper left, axis labels, and ticks at round numbers."""
+    """Title at the upper left, axis labels, and ticks at round numbers.
+
+    Args:
+        axes: The axes.
+        title: Title.
+        x_label: Quantity and unit of the x axis.
+        y_label: Quantity and unit of the y axis.
+        grid: Whether a grid is drawn.
+    """
     axes.set(title=title, xlabel=x_label, ylabel=y_label)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(_round_numbers())
@@ -80,11 +88,11 @@ def colour_bar(
     """A thin colour bar at the right of the axes, without resizing them.
 
     Args:
-        axes: where it stands.
-        mappable: whose colours and limits it shows.
-        label: quantity and unit.
-        mark: a value with a name of its own in place of ticks near it.
-        share: width relative to the usual, of axes that are wider than others.
+        axes: Axes that it belongs to.
+        mappable: Colours and limits.
+        label: Quantity and unit.
+        mark: A value with a name, which replaces ticks near it.
+        share: Relative width, for axes that are wider than others.
     """
     place = axes.inset_axes((1 + 0.02 * share, 0.0, 0.035 * share, 1.0))
     bar = axes.figure.colorbar(mappable, cax=place, ticks=_round_numbers())
@@ -98,7 +106,7 @@ def colour_bar(
 
 
 def note(axes: "Axes", text: str, corner: str = "lower right") -> None:
-    """A small text: bright at the lower right of a map, dark in an upper corner that a fan leaves white."""
+    """A small text: bright at the lower right of a map, dark in an upper corner outside a fan."""
     place, (vertical, horizontal) = _CORNERS[corner], corner.split()
     colour, ground = (GROUND_TRUTH, "black") if vertical == "lower" else (INK, PAPER)
     axes.text(
@@ -138,12 +146,12 @@ def shortened(text: str, length: int) -> str:
 
 @contextmanager
 def page(path: Path | None, title: str, width: float, height: float) -> Iterator["Figure"]:
-    """A figure in the common style, written as PNG in the end.
+    """A figure in the common style, written as PNG on exit.
 
     Args:
-        path: where to; None writes nothing.
-        title: at its upper left.
-        width, height: inches.
+        path: The PNG; None writes no file.
+        title: Title at the upper left.
+        width, height: Size in inches.
     """
     import matplotlib
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -160,7 +168,7 @@ def page(path: Path | None, title: str, width: float, height: float) -> Iterator
 
 
 def evenly_spaced(count: int, most: int) -> np.ndarray:
-    """At most `most` indices of `count`, evenly spaced, the first and the last among them.
+    """At most `most` of `count` indices, evenly spaced, including the first and the last.
 
     >>> evenly_spaced(10, 4)
     array([0, 3, 6, 9])

@@ -1,4 +1,4 @@
-"""The bytes between Python and the page: one JSON header, then little-endian arrays.
+"""Binary format between Python and the page: one JSON header, then little-endian arrays.
 
 uint32   length n of the header, a multiple of 4
 n bytes  JSON, padded with spaces; its key "arrays" maps a name to [type, shape, byte offset after the header]
@@ -19,7 +19,15 @@ TYPES = {"u1": "uint8", "i2": "int16", "i4": "int32", "f4": "float32"}
 
 
 def pack(header: dict[str, Any], arrays: dict[str, np.ndarray]) -> bytes:
-    """Header and arrays as bytes. Raises ValueError for an array of a type that the page does not read."""
+    """Header and arrays as bytes.
+
+    Args:
+        header: Values for JSON.
+        arrays: Arrays by name, uint8, int16, int32 or float32.
+
+    Raises:
+        ValueError: For an array of another type.
+    """
     table: dict[str, list[Any]] = {}
     chunks: list[bytes] = []
     offset = 0
@@ -38,7 +46,11 @@ def pack(header: dict[str, Any], arrays: dict[str, np.ndarray]) -> bytes:
 
 
 def unpack(data: bytes) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
-    """The header (without "arrays") and the arrays of `pack`. Raises InputError for bytes that are none."""
+    """The header (without "arrays") and the arrays of `pack`.
+
+    Raises:
+        InputError: For bytes that are not of `pack`.
+    """
     try:
         (length,) = struct.unpack_from("<I", data)
         header = parse_json(data[4 : 4 + length], "the header")

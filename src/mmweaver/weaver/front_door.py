@@ -158,15 +158,18 @@ class Weaver(RoomReader):
         """Reads a recorded motion for `generate`: BVH, AMASS/SMPL, HumanML3D, CMU or joints; see docs/motion_files.md.
 
         Args:
-            path: Motion file.
-            fps: Frames per second, where the file does not state them.
-            unit: Unit of length, by name or in metres, where the file does not state it.
-            up: Upward axis, where the file does not state it.
-            clip: Name of the clip, in a file of several.
-            body_model: SMPL body model, for files of joint rotations.
+            path: A .bvh, .npy or .npz file.
+            fps: Frames per second; required where the file does not state them, and overrides what it states.
+            unit: m, cm, mm, inch, cmu, or the length of one unit in metres; by default estimated from the body.
+            up: Upward axis, y, z, ...; by default estimated from the body.
+            clip: Name of one motion in a file of several.
+            body_model: The user's own SMPL model (.npz); by default the mean skeleton.
+
+        Returns:
+            22 joints in metres, z up, with notes on what was estimated.
 
         Raises:
-            InputError: For a file that is not a known motion.
+            InputError: If the file is not a human motion.
         """
         return read_motion(path, fps=fps, unit=unit, up=up, clip=clip, body_model=body_model)
 

@@ -250,13 +250,24 @@ class Generation(ShownByFacts):
         pictures: bool = True,
         extra: dict[str, str] | None = None,
     ) -> dict[str, Any]:
-        """Writes all files and pictures into a folder, or none of them; returns the content of meta.json.
+        """Writes all files and pictures into a folder, or none of them.
 
-        Without `pictures` it is much quicker. `adc_data_bin` also writes the raw samples, as a DCA1000 does
-        (`iq_order`: "iq", "qi" or "interleaved"; default: as the radar does). `extra`: text files to add, by name.
-        Raises InputError where the folder cannot be written, or holds other files and `overwrite` is not set.
+        Several radars have one subfolder each, radar_1, radar_2 and so on, with all files except `extra`.
 
-        Several radars have a folder each in it, radar_1, radar_2 and so on, with all files but `extra`.
+        Args:
+            out: The folder.
+            overwrite: Whether an existing folder may be replaced.
+            adc_data_bin: Whether the raw samples are written, too, in the format of a DCA1000.
+            iq_order: Order of I and Q in adc_data.bin, "iq", "qi" or "interleaved"; by default that of the radar.
+            pictures: Whether previews are drawn, which takes most of the time.
+            extra: Text files to add, by name.
+
+        Returns:
+            Contents of meta.json.
+
+        Raises:
+            InputError: If the folder cannot be written, holds other files and `overwrite` is not set, or there are no
+                samples for `adc_data_bin`.
         """
         if self.further:
             return self._save_each(

@@ -47,7 +47,7 @@ def radar_pose(word: str) -> "RadarPose":
 
 @options
 class Request:
-    """What is asked for. A value is that of the only person, or a list with one for each person (None: chosen)."""
+    """The request. A value is that of the only person, or a list with one value per person (None: sampled)."""
 
     text: str | Sequence[str] | None = option(
         "what the person does; once more for each further person; 'nobody' is an empty room",

@@ -29,7 +29,7 @@ class RoomReader:
     """Reads rooms and reconstructs them."""
 
     def __init__(self, listener: Callable[[str], object] | None = None):
-        """Settings of the instance.
+        """Creates a reader.
 
         Args:
             listener: Called with the name of each stage as it begins.

@@ -230,14 +230,25 @@ def check_streams(method: Method, name: str) -> None:
 
 
 def takes_argument(method: Method, name: str) -> bool:
-    """Whether a method accepts an optional argument of `methods.Method`."""
+    """Whether a method accepts an optional argument of `methods.Method`.
+
+    Args:
+        method: The method.
+        name: Name of the argument.
+    """
     call = method if inspect.isfunction(method) else type(method).__call__
     parameters = inspect.signature(call).parameters
     return name in parameters or any(one.kind is one.VAR_KEYWORD for one in parameters.values())
 
 
 def frames_of(signal: SignalT, begin: int, end: int | None) -> SignalT:
-    """A signal or chunk, reduced to the cube and samples of frames `begin` to `end`."""
+    """Some frames of the cube and samples of a signal or chunk.
+
+    Args:
+        signal: The signal or chunk.
+        begin: First frame.
+        end: Frame after the last; None for all remaining.
+    """
     some, cube = slice(begin, end), signal.cube
     grid = replace(cube.grid, frame_time_s=cube.grid.frame_time_s[some])
     adc = None if signal.adc is None else replace(signal.adc, samples=signal.adc.samples[some])

@@ -64,7 +64,15 @@ def _num_sampled_bins(config: RadarConfig) -> int:
 
 
 def _range_bins(white: np.ndarray, config: RadarConfig) -> np.ndarray:
-    """White bins (sampled, ...) -> the stored bins as the range window mixes them, with 3/2 of their power."""
+    """Mixes white bins as the range window does.
+
+    Args:
+        white: White noise (sampled, ...) of `_num_sampled_bins` bins.
+        config: The radar.
+
+    Returns:
+        The stored bins (range, ...), with 3/2 of the power.
+    """
     if len(white) < config.num_range_bins + 2:  # all bins, or all but one, are stored: neighbours are cyclic
         white = white[np.arange(-1, config.num_range_bins + 1) % config.num_samples]
     return white[1:-1] - 0.5 * (white[:-2] + white[2:])

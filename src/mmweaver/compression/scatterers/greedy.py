@@ -29,7 +29,10 @@ class Beams:
     def covering(cls, axes: Axes, num_directions: int) -> "Beams":
         """Beams as dense as the aperture requires.
 
-        A single zero cosine along an axis that the array does not resolve.
+        Args:
+            axes: Cells with the antenna positions.
+            num_directions: Number of direction cosines that the array resolves; along others a single zero cosine is
+                used.
         """
         sides = []
         for side in range(2):

@@ -74,24 +74,55 @@ def rendered(layers: Layers, response: PointResponse, axes: Axes) -> Tensor:
 
 
 def static_cells(static: Tensor, response: PointResponse, axes: Axes) -> Tensor:
-    """Cells (range, doppler, antenna) of a static layer (range, antenna)."""
+    """Cells of a static layer.
+
+    Args:
+        static: Static layer (range, antenna).
+        response: Point response of the window.
+        axes: Cells to render.
+
+    Returns:
+        Values (range, doppler, antenna).
+    """
     return static[:, None, :] * response.doppler_kernel(axes.doppler_bin)[0][:, None]
 
 
 def subtract_static(residual: Array, static: Array, response: StaticResponse) -> None:
-    """Subtracts a static layer (range, antenna) from a residual (frame, range, doppler, antenna), in place."""
+    """Subtracts a static layer from a residual, in place.
+
+    Args:
+        residual: Residual (frame, range, doppler, antenna).
+        static: Static layer (range, antenna).
+        response: As given by `static_response`.
+    """
     kernel, bins = response
     residual[:, :, bins] -= static[:, None, :] * kernel[:, None]
 
 
 def fit_static(residual: Array, response: StaticResponse) -> Array:
-    """Least-squares static layer (range, antenna) of a residual (frame, range, doppler, antenna)."""
+    """Least-squares static layer of a residual.
+
+    Args:
+        residual: Residual (frame, range, doppler, antenna).
+        response: As given by `static_response`.
+
+    Returns:
+        Static layer (range, antenna).
+    """
     kernel, bins = response
     return np.einsum("trda,d->ra", residual[:, :, bins], kernel) / (len(residual) * np.square(kernel).sum())
 
 
 def static_response(response: PointResponse, axes: Axes) -> StaticResponse:
-    """Doppler response of zero velocity where it is not zero, and those bins: three for a Hann window."""
+    """Doppler response of zero velocity, where it is not zero.
+
+    Args:
+        response: Point response of the window.
+        axes: Cells to render.
+
+    Returns:
+        The response, and the slice of its bins: three for a Hann window.
+    """
     kernel = response.doppler_kernel(axes.doppler_bin)[0].numpy()
     found = np.flatnonzero(np.abs(kernel) > NO_RESPONSE)
     bins = slice(int(found[0]), int(found[-1]) + 1) if len(found) else slice(0, 0)
@@ -109,7 +140,12 @@ def no_points(num_frames: int) -> Points:
 
 
 def select_points(points: Points, order: Tensor) -> Points:
-    """Points of each frame selected by indices (frame, selected)."""
+    """Points of each frame selected by index.
+
+    Args:
+        points: Points (frame, point).
+        order: Indices (frame, selected).
+    """
     return points[torch.arange(len(order))[:, None], order]
 
 
@@ -122,7 +158,15 @@ def compact(points: Points) -> Points:
 
 
 def strongest(points: Points, count: int) -> Points:
-    """The `count` strongest points over all frames."""
+    """The strongest points over all frames.
+
+    Args:
+        points: Points (frame, point).
+        count: Number of points to keep.
+
+    Returns:
+        Points (frame, point), padded with amplitude zero.
+    """
     size = points.amplitude.abs().flatten()
     if count >= int((size > 0).sum()):
         return compact(points)

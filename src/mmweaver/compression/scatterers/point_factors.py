@@ -78,7 +78,13 @@ class PointFactors:
 
     @classmethod
     def of(cls, points: Points, response: PointResponse, axes: Axes) -> "PointFactors":
-        """Factors of scatterers (frame, point)."""
+        """Factors of scatterers.
+
+        Args:
+            points: Scatterers (frame, point).
+            response: Point response of the window.
+            axes: Cells to evaluate at.
+        """
         bins = np.stack([points.range_bin.numpy(), points.doppler_bin.numpy()])
         own = FactorAxes.of(response, axes)
         return cls.evaluate(own, bins, points.direction.numpy(), points.amplitude.numpy())
@@ -117,7 +123,14 @@ class PointFactors:
         return self.evaluate(self.axes, bins, direction.clip(-1, 1), amplitude)
 
     def joined(self, frame: Array, bins: Array, direction: Array, amplitude: Array) -> "PointFactors":
-        """The scatterers with more of them (point,), sorted by frame, after those of their frames."""
+        """The scatterers with more of them, after those of their frames.
+
+        Args:
+            frame: Frame (point,) of each new scatterer, increasing.
+            bins: Range and Doppler bins (2, point).
+            direction: Direction cosines (point, 2).
+            amplitude: Amplitudes (point,), complex64.
+        """
         have, more = self.counts(), np.bincount(frame, minlength=self.amplitude.shape[0])
         slot = have[frame] + np.arange(len(frame)) - (np.cumsum(more) - more)[frame]
         kept, num = int(have.max(initial=0)), int((have + more).max(initial=0))
@@ -136,7 +149,12 @@ class PointFactors:
         return PointFactors(axes=self.axes, **out)
 
     def take(self, other: "PointFactors", frame: int) -> None:
-        """Replaces a frame's scatterers by those of another set."""
+        """Replaces the scatterers of one frame.
+
+        Args:
+            other: Set to take them from.
+            frame: Index of the frame.
+        """
         for name in ("bins", "at_range", "at_doppler"):
             getattr(self, name)[:, frame] = getattr(other, name)[:, frame]
         for name in ("direction", "amplitude", "steer"):
