@@ -18,8 +18,8 @@ EXAMPLES = """examples:
   mmweaver evaluate zero-shot-activity --weights model/ --recordings recordings/
   mmweaver evaluate zero-shot-pose --recordings MARS/ --json
 
-Without --weights the recogniser is that of examples/tasks/radhar.toml. Recordings are of an IWR1443 at 30 frames a
-second, as RadHAR publishes them (.txt, one message a point) or as .npz with frame (point) and pts (point, 8). The
+Without --weights the recogniser is that of examples/tasks/radhar.toml. Recordings are of an IWR1443 at 30 frames per
+second, as RadHAR publishes them (.txt, one message per point) or as .npz with frame (point) and pts (point, 8). The
 activity is the subfolder's name or a word of the file's name: boxing, jack, jump, squats, walk. For other radars and
 activities train a model from a task file: docs/recognise.md.
 Those of zero-shot-pose are MARS, or one of its subjects (radar_data_test.csv, kinect_data_test.csv): docs/pose.md.
@@ -33,7 +33,7 @@ class Options(Printed):
     task: Literal["zero-shot-activity", "zero-shot-pose"] = option("what is scored", default=MISSING, positional=True)
     recordings: Path = option("folder of recordings", "DIR", default=MISSING)
     weights: Path | None = option("a folder of mmweaver recognise train or train pose", "DIR")
-    split: Literal["train", "validate", "test"] | None = option("zero-shot-pose: of MARS (default test)")
+    split: Literal["train", "validate", "test"] | None = option("zero-shot-pose: which split of MARS (default test)")
 
 
 def run(asked: Options) -> int:
