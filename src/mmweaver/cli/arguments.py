@@ -94,7 +94,8 @@ class General:
         "print every assumption, and log each stage", default=False, short="-v", group="general", is_setting=False
     )
     config: Path | None = option(
-        f"read options from a file, such as the {REQUEST_FILE} of an earlier run; options of the command line go first",
+        f"read options from a file, such as the {REQUEST_FILE} of an earlier run; options of the command"
+        " line take precedence",
         "TOML",
         is_setting=False,
     )
@@ -130,7 +131,8 @@ def add_options(parser: Parser, command: type[General], *, rare: bool) -> None:
     group: Any = parser
     own = getattr(command, "GROUPS", {})
     hidden = 0
-    for one in options_of(command):
+    general = {one.name for one in options_of(General)}
+    for one in sorted(options_of(command), key=lambda one: one.name in general):  # these last
         title = own.get(one.name) or one.metadata.get("group")
         if title:
             group = groups[title] = groups.get(title) or parser.add_argument_group(title)

@@ -1,7 +1,6 @@
 """mmweaver calibrate: the board that made some recordings."""
 
 from pathlib import Path
-from typing import ClassVar
 
 from mmweaver.cli.option_groups import Ranges, Samples, Written
 from mmweaver.core.errors import InputError
@@ -23,14 +22,13 @@ class Options(Written, Samples, Ranges):
     generate --board takes the file.
     """
 
-    GROUPS: ClassVar[dict[str, str]] = {"radar": "what recordings do not bring"}
     recordings: list[Path] = option(
         "raw samples, or a folder of mmweaver process", "RECORDING", default=MISSING, positional=True
     )
-    out: Path = option("the board's file", "JSON", default=MISSING, is_setting=False)
+    out: Path = option("the board.json to write", "JSON", default=MISSING, is_setting=False)
     target: tuple[float, ...] | None = option(
-        "true distance in metres of the strongest echo near it, straight ahead, and its cross section: gives range"
-        " bias, and gain",
+        "true distance in metres of the strongest echo near it, straight ahead, and its radar cross section in dBsm:"
+        " range bias, and gain, follow",
         "RANGE[,DBSM]",
     )
 

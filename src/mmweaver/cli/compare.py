@@ -25,12 +25,12 @@ class Options(Samples, Written):
     points; ranked by effect size, with pictures on the same axes and decibels.
     """
 
-    GROUPS: ClassVar[dict[str, str]] = {"radar": "raw samples, which do not bring their radar", "overwrite": "output"}
+    GROUPS: ClassVar[dict[str, str]] = {"overwrite": "output"}
 
     a: Path = option("the signal to compare with, such as a recording", "A", default=MISSING, positional=True)
     b: Path = option("the signal that is compared with it, such as a simulation", "B", default=MISSING, positional=True)
     range_m: tuple[float, float] | None = option(
-        "metres that are compared (default: all that both show)", "NEAR,FAR", name="range"
+        "ranges in metres that are compared (default: all that both show)", "NEAR,FAR", name="range"
     )
     out: Path | None = option(
         "folder for comparison.png, comparison.json and comparison.html (default: print the numbers only)", "DIR"

@@ -3,7 +3,7 @@
 import math
 import time
 from pathlib import Path
-from typing import Any, ClassVar, Literal
+from typing import Any, Literal
 
 from mmweaver.cli.option_groups import Ranges, Samples, Written
 from mmweaver.core.errors import InputError
@@ -33,8 +33,6 @@ def quality(word: str) -> float:
 class Options(Written, Samples, Ranges):
     """Stores a radar cube as moving scatterers, a static layer and their residual, in a .mmw file."""
 
-    GROUPS: ClassVar[dict[str, str]] = {"radar": "input"}
-
     file: Path = option(
         "radar.npz or its folder, adc_data.bin of a DCA1000, raw ADC samples as .npy, a HuPR, mmMesh or RF-Genesis"
         " array, or a capture folder of mmwave-capture-std",
@@ -44,17 +42,19 @@ class Options(Written, Samples, Ranges):
     )
     out: Any = option("the .mmw or .mmwl file to write", "FILE", short="-o", kind=Path)
     bytes: int | None = option(
-        "size of the file at most; less where the cube is exact in fewer", "N", group="size and quality"
+        "largest size of the file in bytes; it is smaller where fewer bytes hold the cube exactly",
+        "N",
+        group="size and quality",
     )
     quality: float | None = option(
-        "signal-to-error ratio in the cells with signal; or lossless: every bit of an adc_data.bin, or of the samples"
-        " in a .pcap; decompress gives the same adc_data.bin",
+        "signal-to-error ratio in dB in the cells with signal; or lossless: every bit of an adc_data.bin,"
+        " or of the samples in a .pcap; decompress gives the same adc_data.bin",
         "DB|lossless",
         kind=quality,
     )
     preset: Literal["full", "fast"] = option("fast: without the fit of scatterers", default="full")
     append: bool = option(
-        "add the frames to those of the .mmw file; --bytes are those added", default=False, group="output"
+        "add the frames to those of the .mmw file; --bytes counts those that are added", default=False, group="output"
     )
 
 

@@ -46,7 +46,7 @@ class LabelledSet:
         "DIR",
     )
     per_class: int | None = option("sequences of each label (default 20)", "N")
-    seconds: float | None = option("length of every sequence (default 3)", "S")
+    seconds: float | None = option("duration of every sequence in seconds (default 3)", "S")
     subjects: int | None = option("different people (default 10)", "N")
     split: Literal["subject", "place", "room", "sentence"] | None = option(
         "what is held out for tests (default subject)"
@@ -85,7 +85,7 @@ class Options(LabelledSet, RoomSet, RadarChoice, Ranges, BoardChoice, Printed):
     so it may be stopped and started again.
     """
 
-    GROUPS: ClassVar[dict[str, str]] = {"radar_set": "content", "json": "output"}
+    GROUPS: ClassVar[dict[str, str]] = {"radar": "radar", "json": "output"}
 
     out: Path = option("folder of the data set", "OUT", default=MISSING, positional=True, is_setting=False)
     seed: int = option("the same seed gives the same bits", "N", default=0)

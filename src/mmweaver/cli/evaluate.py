@@ -27,7 +27,8 @@ class Options(Printed):
 
     task: Literal["zero-shot-activity"] = option("what is scored", default=MISSING, positional=True)
     recordings: Path = option("folder of recordings", "DIR", default=MISSING)
-    weights: Path | None = option("a folder of mmweaver recognise train", "DIR")
+    weights: Path | None = option("a folder of mmweaver recognise train or train pose", "DIR")
+    split: Literal["train", "validate", "test"] | None = option("zero-shot-pose: which split of MARS (default test)")
 
 
 def run(asked: Options) -> int:

@@ -21,7 +21,7 @@ class Options(Written):
     """
 
     folder: Path | None = option("a result folder, a folder of them, or a labelled set", "DIR", positional=True)
-    to: str | None = option("the format", "FORMAT")
+    to: str | None = option("the format; mmweaver export lists them", "FORMAT")
     out: Path | None = option("folder for the files, or one file: walk.mp4", "DIR")
 
 

@@ -67,7 +67,8 @@ class RoomInput:
     )
     camera: Path | None = option("fx, fy, cx, cy in pixels (default: a RealSense D455's)", "JSON")
     room: Path | None = option(
-        "instead of --rgb: a folder with rgb.png, depth.png and camera.json; views.json, several photos with depth and"
+        "instead of --rgb, --depth and --camera: a folder with rgb.png, depth.png and camera.json;"
+        " views.json, several photos with depth and"
         " roughly where each was taken (docs/photos.md); a scan or capture (mmwave-capture-std, Stray Scanner,"
         " Record3D, Polycam raw data, ScanNet, TUM RGB-D), a ROS bag (RealSense), or a mesh (.glb, .ply, .obj)",
         "PATH",
@@ -222,7 +223,9 @@ class Advanced(Layout):
 class Results(Written):
     """Output files."""
 
-    out: Path | None = option("folder for the results", "DIR", group="output", is_setting=False)
+    out: Path | None = option(
+        "folder for the results (default with --demo: demo)", "DIR", group="output", is_setting=False
+    )
     no_pictures: bool = option("leave out preview.png and preview.gif", default=False)
 
 

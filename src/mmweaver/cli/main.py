@@ -6,6 +6,8 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from shutil import get_terminal_size
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 from mmweaver.core.errors import InputError
@@ -22,7 +24,7 @@ COMMANDS = {
     "view": "play a result folder in the browser",
     "plot": "draw the features of a signal, as recognisers take them",
     "export": "write results in the formats of other tools",
-    "process": "take a recording through the same processing",
+    "process": "process a recording: range, Doppler, angle, CFAR",
     "compare": "compare two signals, recorded or simulated",
     "calibrate": "find the errors of your board in its recordings",
     "points": "read a point cloud of a board or a data set",
@@ -128,7 +130,7 @@ def parser_of(*names: str, rare: bool = False) -> "tuple[Parser, dict[str, tuple
             help=text,
             epilog=module.EXAMPLES,
             usage=getattr(module, "USAGE", None),
-            description=" ".join((module.Options.__doc__ or "").split()),
+            description=fill(" ".join((module.Options.__doc__ or "").split()), get_terminal_size().columns - 2),
         )
         add_options(command, module.Options, rare=rare)
         commands[name] = command, module.Options

@@ -22,9 +22,9 @@ class Options(Printed):
     """Reads a sentence and animates it on an empty floor, without a photo and without a radar."""
 
     text: str = option("what the person does", "SENTENCE", default=MISSING, positional=True)
-    seconds: float | None = option("how long (default: what the sentence needs)", "S")
+    seconds: float | None = option("duration in seconds (default: what the sentence needs)", "S")
     seed: int = option("the same seed gives the same motion", "N", default=0)
-    height: float | None = option("the person's height (default: by the seed)", "M")
+    height: float | None = option("the person's height in metres (default: by the seed)", "M")
     subject: int | None = option("the person, 0 to 9999 (default: by the seed)", "N")
     out: list[Path] | None = option(
         "write 22 joints at 120 Hz, as pose.npz holds them, or draw the body at ten instants (.png, .pdf, .svg); once"

@@ -55,7 +55,7 @@ class Ranges:
     """Range window."""
 
     range_m: tuple[float, float] | None = option(
-        "metres to keep (default: a preset's own window; all of a .cfg, up to 4 MiB per frame)",
+        "ranges to keep, in metres (default: a preset's own window; all of a .cfg, up to 4 MiB per frame)",
         "NEAR,FAR",
         name="range",
     )
@@ -85,7 +85,11 @@ class RadarSettings(General):
 class RadarChoice(RadarSettings):
     """A radar, and settings that its file does not contain."""
 
-    radar: Source | None = option("preset, TI .cfg or radar.json", "NAME|FILE")
+    radar: Source | None = option(
+        "preset (mmweaver radar lists them), TI .cfg or radar.json; signals are generated for awr1843, or"
+        " for the radar of --background, by default",
+        "NAME|FILE",
+    )
 
 
 def radar_name(name: str | None, settings: list[Setting] | None) -> str | None:
@@ -107,7 +111,8 @@ class Layout:
 
     iq_order: IqOrder | None = option(
         "order of I and Q in the .bin: I I Q Q, Q Q I I or I Q I Q (default: as the .cfg or mmWave Studio file says,"
-        " else iq)"
+        " else iq)",
+        group="raw samples",
     )
     tx_order: tuple[int, ...] | None = option("order in which the transmitters fire (default: the radar's)", "N,N,N")
 
@@ -120,6 +125,7 @@ class Samples(RadarChoice, Layout):
         "what a .npy holds: its axes in their order, such as frame,loop,tx,rx,sample, or whose it is: hupr (a frame or"
         " a folder of them), mmmesh, rf_genesis, cubelearn",
         "AXES|NAME",
+        group="raw samples",
     )
 
     def reading(self) -> dict[str, Any]:
@@ -139,8 +145,7 @@ class BoardChoice:
 
     board: Source | None = option(
         "the board whose errors the signal has: typical, sampled by the seed from the spread of recorded boards"
-        " (default; typical:N is one of them), ideal, or a board.json of mmweaver calibrate; with --background the"
-        " default is the recording's own",
+        " (default; typical:N is one of them), ideal, or a board.json of mmweaver calibrate",
         "typical|ideal|FILE",
     )
 

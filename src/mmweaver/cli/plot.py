@@ -1,7 +1,7 @@
 """mmweaver plot: pictures of the features of a signal."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Literal
 
 from mmweaver.cli.option_groups import Samples
 from mmweaver.core.errors import InputError
@@ -25,8 +25,6 @@ class Options(Samples):
     per frame.
     """
 
-    GROUPS: ClassVar[dict[str, str]] = {"radar": "raw samples, which do not bring their radar"}
-
     signal: Path = option(
         "a folder of mmweaver generate or process, a .mmw file, a recording, or a labelled set",
         "SIGNAL",
@@ -41,7 +39,7 @@ class Options(Samples):
     frames: tuple[int, ...] | None = option("at most 8 frames, from 0 on (default: four of them)", "N,N,...")
     remove_static: Literal["mean_chirp"] | None = option("rd, ra and re without each frame's mean chirp")
     sequence: int | None = option("which sequence of a labelled set (default 0)", "N")
-    out: Path = option("the picture", "PNG", default=Path("features.png"), short="-o")
+    out: Path = option("the picture (default: features.png)", "PNG", default=Path("features.png"), short="-o")
     overwrite: bool = option("replace the picture where it exists", default=False)
 
 

@@ -18,7 +18,7 @@ class Options(Written):
     """
 
     model: Path = option("folder of mmweaver train pose, or its weights", "MODEL", default=MISSING, positional=True)
-    points: Path = option("a recording of one person", "FILE", default=MISSING)
+    points: Path = option("point cloud of one person, as mmweaver points reads it", "FILE", default=MISSING)
     out: Path = option("folder for pose.npz and pose.png", "DIR", default=MISSING)
 
 

@@ -23,7 +23,7 @@ EXAMPLES = """examples:
 class Options(Samples, Ranges, PointChoice, Written):
     """Takes raw ADC samples of a real radar through range, Doppler, angle and CFAR."""
 
-    GROUPS: ClassVar[dict[str, str]] = {"radar": "input", "points": "output"}
+    GROUPS: ClassVar[dict[str, str]] = {"points": "output"}
 
     file: Path | None = option(
         "adc_data.bin of a DCA1000, its packets as .pcap or .pcapng, raw ADC samples as .npy, radar.npz, a HuPR,"
@@ -34,10 +34,10 @@ class Options(Samples, Ranges, PointChoice, Written):
     )
     out: Path = option("folder for the results", "DIR", default=MISSING, is_setting=False)
     board: Source | None = option(
-        "board.json of the board that made it (mmweaver calibrate), whose errors are taken away", "FILE"
+        "board.json of the board that recorded it (mmweaver calibrate), whose errors are removed", "FILE"
     )
     remove_static: Literal["auto", "mean_chirp", "mean_frame"] | None = option(
-        "take static clutter away from the cube and its points: the mean over each frame's chirps, or over all frames"
+        "remove static clutter from the cube and its points: the mean over each frame's chirps, or over all frames"
         " (auto: over frames where a frame has fewer than four loops)"
     )
     no_analysis: bool = option("do not look for slow movement, breathing, micro-Doppler and people", default=False)

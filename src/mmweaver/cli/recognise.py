@@ -30,7 +30,11 @@ class Options(Printed):
     labels point clouds from a file or a pipe.
     """
 
-    action: Literal["train", "score", "run"] = option("what is done", default=MISSING, positional=True)
+    action: Literal["train", "score", "run"] = option(
+        "train a recogniser, score it on labelled recordings, or run it on a point cloud",
+        default=MISSING,
+        positional=True,
+    )
     place: Path = option(
         "train: the task; else the trained folder", "TASK.toml|MODEL", default=MISSING, positional=True
     )
@@ -38,14 +42,16 @@ class Options(Printed):
     sequences: int | None = option(
         "people that perform each activity (default 40, of gestures that are done once 100; 8 are a first look)", "N"
     )
-    seed: int = option("of people, rooms and trees", "N", default=0)
+    seed: int = option("seed of people, rooms and trees", "N", default=0)
     recordings: Any = option(
         "labelled recordings, a folder per activity: that train along, or that are scored",
         "DIR",
         group="train and score",
         kind=Path,
     )
-    points: Any = option("a recording, or - for a pipe", "FILE|-", group="run", kind=Path)
+    points: Any = option(
+        "a point cloud, as mmweaver points reads it, or - for standard input", "FILE|-", group="run", kind=Path
+    )
 
 
 def run(asked: Options) -> int:

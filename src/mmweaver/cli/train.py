@@ -69,18 +69,19 @@ class Options(Printed):
         many=True,
     )
     rgb: Path | None = option("photo of the room, where the folders hold none", "PNG")
-    depth: Path | None = option("its depth", "FILE")
-    camera: Path | None = option("its fx, fy, cx, cy", "JSON")
-    sequences: int | None = option("recipe pose: people an activity (default 40)", "N", group="optimisation")
-    steps: int | None = option("steps in all (default 6000; activity 800, pose 2000, captures 300)", "N")
+    depth: Path | None = option("its depth: 16-bit PNG (mm), .npy or float TIFF in metres", "FILE")
+    camera: Path | None = option("its camera: fx, fy, cx, cy in pixels", "JSON")
+    sequences: int | None = option("recipe pose: people per activity (default 40)", "N", group="optimisation")
+    steps: int | None = option("total number of steps (default 6000; activity 800, pose 2000, recordings 300)", "N")
     batch: int | None = option(
-        "sequences a step, of all processes together (default 3; activity and pose 16, captures 2)", "N"
+        "sequences per step, over all processes (default 3; activity and pose 16, recordings 2)", "N"
     )
     learning_rate: float | None = option(
-        "of Adam, at its highest (default 1e-3; activity and pose 2e-3, captures 2e-4, without joints 5e-3)", "RATE"
+        "peak learning rate of AdamW (default 1e-3; activity and pose 2e-3, recordings 2e-4, without joints 5e-3)",
+        "RATE",
     )
-    seed: int = option("of the first weights and of the batches", "N", default=0)
-    validate_every: int | None = option("steps between validations (default 250; activity 100, captures 25)", "STEPS")
+    seed: int = option("seed of the initial weights and of the batches", "N", default=0)
+    validate_every: int | None = option("steps between validations (default 250; activity 100, recordings 25)", "STEPS")
     encoder: str | None = option("recipe weaver's environment encoder (default efficientnet)", "NAME", rare=True)
     save_every: float = option("seconds between checkpoints", "S", default=60.0)
     device: str = option(

@@ -50,7 +50,7 @@ class Request:
     """The request. A value is that of the only person, or a list with one value per person (None: sampled)."""
 
     text: str | Sequence[str] | None = option(
-        "what the person does; once more for each further person; 'nobody' is an empty room",
+        "what the person does; give it once more for each further person; 'nobody' is an empty room",
         "TEXT",
         kind=str,
         many=True,
@@ -65,8 +65,8 @@ class Request:
         many=True,
     )
     heading_rad: float | None = option(
-        "the direction that the person faces first: 0 towards the radar, 90 to the picture's right, 180 away (default:"
-        " as the text says, else by seed)",
+        "the direction that the person faces first, in degrees: 0 towards the radar, 90 to the picture's"
+        " right, 180 away (default: as the text says, else by seed)",
         "DEG",
         kind=Heading,
         name="heading",
@@ -80,7 +80,8 @@ class Request:
         rare=True,
     )
     height_m: float | Sequence[float | None] | None = option(
-        "the person's height (default: as the text says, else by seed, or recorded); of several people once for each",
+        "the person's height in metres (default: as the text says, else by seed, or recorded); of several"
+        " people once for each",
         "M",
         kind=float,
         many=True,
@@ -103,7 +104,7 @@ class Request:
         "N",
         group="radar",
     )
-    seconds: float | None = option("instead of --frames: how long", "S")
+    seconds: float | None = option("instead of --frames: duration in seconds", "S")
     fps: float | None = option("frames per second (default: the radar's own, 10 for awr1843)", "N")
     radar_poses: "Sequence[RadarPose]" = option(
         "where the radar stands, in metres right of, ahead of and above the camera, and degrees to which it is turned"
