@@ -19,7 +19,7 @@ def test_numbers_and_files(results: tuple[str, str], tmp_path: Path, capsys: pyt
     assert main(["compare", *results, "--out", str(tmp_path / "out")]) == 0
     printed = capsys.readouterr().out
     assert "plane wave" in printed
-    assert "range window" in printed
+    assert "window is cut" in printed
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
         "comparison.html", "comparison.json", "comparison.png",
     ]  # fmt: skip

@@ -138,7 +138,7 @@ def test_points_as_a_board_reports_them(tmp_path: Path):
     """On the board's steps of 4.09 cm, hardly anything that stands still, and the settings in meta.json."""
     (tmp_path / "board.cfg").write_text(BOARD_CFG)
     out = tmp_path / "board"
-    argv = ["generate", "--demo", "--radar", str(tmp_path / "board.cfg"), "--points", "firmware", "--frames", "10"]
+    argv = ["generate", "--demo", "--radar", str(tmp_path / "board.cfg"), "--points", "firmware", "--frames", "5"]
     assert main([*argv, "--text", WALK, "--out", str(out), "--quiet", "--no-pictures"]) == 0
     points = read_npz(out / "points.npz")
     assert len(points["frame"]) > 10

@@ -47,7 +47,7 @@ def test_a_recorded_motion_in_the_sample_room(recorded: Path, tmp_path: Path, ca
     argv += ["--at", "0.1,1.7", "--heading", "-20", "--height", "1.85", "--no-pictures"]
     assert main(argv) == 0
     shown = capsys.readouterr().out
-    assert "lengths of arm.npy are taken as cm" in shown
+    assert "arm.npy are taken as cm" in shown
     assert "scaled to 1.85 m" in shown
     meta = json.loads((out / "meta.json").read_text())
     assert meta["text"] == "arm.npy"

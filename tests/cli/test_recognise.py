@@ -56,9 +56,8 @@ def test_train_score_and_run(model: Path, capsys: pytest.CaptureFixture[str], mo
 
 def test_the_largest_confusions_of_generated_people_are_named():
     labels, confusion = ("lie", "run", "walk"), [[9, 0, 1], [0, 4, 6], [0, 1, 9]]
-    assert confused_lines(labels, confusion) == [
-        "most often mistaken: run for walk (60%), walk for run (10%), lie for walk (10%)"
-    ]
+    (line,) = confused_lines(labels, confusion)
+    assert line.endswith("run for walk (60%), walk for run (10%), lie for walk (10%)")
     assert confused_lines(labels, [[20, 0, 1], [0, 9, 0], [0, 0, 9]]) == []
 
 

@@ -34,7 +34,7 @@ def test_the_files(comparison, tmp_path: Path):
     assert "<script" not in page
     assert "&lt;script&gt;" in page
     assert "://" not in page  # nothing is loaded from elsewhere
-    assert "range window" in page
+    assert "window is cut" in page
     with pytest.raises(InputError, match="--overwrite"):
         comparison.save(tmp_path / "out")
     comparison.save(tmp_path / "out", overwrite=True)

@@ -12,7 +12,7 @@ from mmweaver.motion.mocap.axes import UNITS_M, UPS, is_reflected, metres_of, ro
 def test_units_are_read_off_the_body(unit: str):
     metres, note = unit_of(walk() / UNITS_M[unit], None, "walk")
     assert metres == UNITS_M[unit]
-    assert ("taken as the CMU collection's unit" if unit == "cmu" else f"taken as {unit}") in note
+    assert ("CMU" if unit == "cmu" else f"taken as {unit}") in note
     assert "1.7" in note
 
 

@@ -100,5 +100,5 @@ def test_as_recorded_moves_nothing():
 def test_who_sits_in_the_recording_is_said():
     seated = MotionClip(joints_m=walk(60.0, 2.0, "a person sits"), fps=60.0, label="sits")
     motion = place_clip(seated, room(), duration_s=1.0, seed=0, range_window_m=WINDOW_M)
-    assert "no furniture is placed under it" in motion.assumptions[-1]
+    assert "no furniture" in motion.assumptions[-1]
     assert not place_clip(clip(), room(), duration_s=1.0, seed=0, range_window_m=WINDOW_M).assumptions

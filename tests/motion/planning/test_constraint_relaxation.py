@@ -81,7 +81,7 @@ def test_who_has_no_room_to_walk_on_ahead_turns_and_it_is_said():
     corridor = room(boxes=((-3.0, -0.4, 0.0, 6.0), (0.4, 3.0, 0.0, 6.0), (-3.0, 3.0, 0.0, 1.6), (-3.0, 3.0, 3.6, 6.0)))
     plan = plan_motion("a person walks, stops, waves and walks on", 6.0)
     made = compose(plan, corridor, seed=0, range_window_m=WINDOW_M)
-    assert [note for note in made.assumptions if "no room to go on ahead for 'walks on'" in note]
+    assert [note for note in made.assumptions if "'walks on'" in note]
     assert made.plan.steps[-1].moves
     assert going_on_elsewhere(plan_motion("a person walks, stops, then walks forward", 6.0))[1] == ()
 
