@@ -372,7 +372,7 @@ def _check_motion(asked: Options) -> None:
         raise InputError("--motion-set is about a recorded motion; give --motion too")
 
 
-def _with_motion(asked: Options, request: Request, weaver: "Weaver") -> Request:
+def _add_motion(asked: Options, request: Request, weaver: "Weaver") -> Request:
     """The request with a recorded motion, or with one that a model generates from its text."""
     from dataclasses import replace
 

@@ -136,7 +136,7 @@ def _photo(session: Session, files: dict[str, Path], folder: Path) -> dict[str, 
     return _photographed(session, RoomFiles(rgb=colour[0], depth=depth[0], camera=camera))
 
 
-def _without_depth(session: Session, photo: Path) -> RecoverableError:
+def _drop_depth(session: Session, photo: Path) -> RecoverableError:
     """Offers to estimate the depth if the package is installed, otherwise names what to install."""
     name = secrets.token_urlsafe(6)
     session.photos[name] = photo
