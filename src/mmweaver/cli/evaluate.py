@@ -27,8 +27,7 @@ class Options(Printed):
 
     task: Literal["zero-shot-activity"] = option("what is scored", default=MISSING, positional=True)
     recordings: Path = option("folder of recordings", "DIR", default=MISSING)
-    weights: Path | None = option("a folder of mmweaver recognise train or train pose", "DIR")
-    split: Literal["train", "validate", "test"] | None = option("zero-shot-pose: which split of MARS (default test)")
+    weights: Path | None = option("a folder of mmweaver recognise train", "DIR")
 
 
 def run(asked: Options) -> int:
