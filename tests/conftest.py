@@ -109,7 +109,7 @@ def rooms_are_reconstructed_once() -> Iterator[None]:
     ) -> LearnedRoom:
         if self.weights is not None or background is not None:
             return encode(self, scene, config, background, board)
-        key = id(scene), config, None if board is None else board.digest
+        key = id(scene), config, self.propagation, None if board is None else board.digest
         if key not in encoded:
             encoded[key] = scene, encode(self, scene, config, None, board)  # the scene is kept, so its id stays its own
         return encoded[key][1]

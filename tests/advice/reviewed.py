@@ -135,6 +135,7 @@ REVIEWED: dict[str, str] = {
     ),
     **dict.fromkeys(
         (
+            "--method-set is for weaver and physics, not for",  # a method of a plug-in
             "give the raw recording",
             "holds no RealSense",
             "takes no measured depth",

@@ -192,4 +192,12 @@ ROWS = (
             add("--texts", "-"),
         ),
     ),
+    Row(
+        "--method-set has bounces=1 or 2 and clutter=all or resolved",
+        f"{DEMO} --text 'a person waves' --frames 1 --method-set bounces=3",
+        (
+            instead("bounces=1 or 2", "bounces=3", "bounces=1"),
+            instead("clutter=all or resolved", "bounces=3", "clutter=resolved"),
+        ),
+    ),
 )

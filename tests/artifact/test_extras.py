@@ -21,9 +21,8 @@ RUNNER = Path(__file__).parent / "run_refused.py"
 PHOTO = "--rgb rgb.png --depth depth.png --camera camera.json --text 'a person walks' --out out/"
 # a command, and the extra that it needs; made/ is a result folder, stray/ a scan of a telephone
 FEATURES = (
-    ("generate --rgb rgb.png --depth-model auto --text 'a person walks' --out out/", "pretrained"),
-    (f"generate --segmenter some/model {PHOTO}", "pretrained"),
-    (f"generate --segmenter builtin --sam some/model {PHOTO}", "pretrained"),
+    ("generate --rgb rgb.png --depth auto --text 'a person walks' --out out/", "pretrained"),
+    (f"generate --classes some/model {PHOTO}", "pretrained"),
     ("generate --demo --motion-model small --motion-set for=all --text 'a person waves' --out out/", "pretrained"),
     ("generate --demo --motion-model some/model --motion-set for=all --text 'she waves' --out out/", "pretrained"),
     ("generate --demo --weights some/model --out out/", "weaver"),
@@ -31,7 +30,6 @@ FEATURES = (
     ("generate --room room.bag --text 'a person walks' --out out/", "capture"),
     ("generate --room stray/ --text 'a person walks' --out out/", "phone"),
     ("generate --rgb photo.heic --depth depth.png --text 'a person walks' --out out/", "phone"),
-    ("generate --demo --texts texts.txt --per-class 2 --store --out out/", "dataset"),
     ("dataset out/ --rooms office --layouts 1 --sequences 1", "dataset"),
     ("dataset out/ --rooms office --layouts 1 --sequences 1 --workers 2", "dataset"),
     ("dataset out/ --rooms office --layouts 1 --sequences 1 --ray-address local", "cluster"),
@@ -42,13 +40,11 @@ FEATURES = (
     ("recognise train TASK.toml --out out/", "evaluate"),
     ("completion bash", "completion"),
     ("studio --port 0 --no-browser", "studio"),
-    ("view result.rrd", "rerun"),
     *((f"export made/ --to {kind} --out out/", "export") for kind in ("zarr", "netcdf", "ros2", "mcap", "mp4", "webm")),
     ("export made/ --to mp4 --out out.mp4", "export"),
     ("export made/ --to rerun --out out/", "rerun"),
     ("python 'from mmweaver.io.conversions import to_dataset; to_dataset(None, None, (), None, {})'", "xarray"),
     ("python 'from mmweaver.viz.notebook import player_widget; player_widget(None, None)'", "notebook"),
-    ("python 'import mmweaver.compression.zarr_codec'", "dataset"),
     ("python 'from mmweaver.models.hub import push_to_hub; push_to_hub(None, None)'", "weaver"),
 )  # fmt: skip
 NOT_IN_AN_EXTRA = {"liblzfse"}  # has no wheels; the message says what to install

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mmweaver.cli.arguments import General
+from mmweaver.core.errors import InputError
 from mmweaver.core.options import MISSING, option, options
 from mmweaver.core.output_checks import check_output_file
 
@@ -36,6 +37,8 @@ def run(asked: Options) -> int:
     Raises:
         InputError: If the folder contains no result.
     """
+    if asked.folder.is_file():
+        raise InputError(f"{asked.folder} is a file; give a folder of mmweaver generate or mmweaver process")
     out = asked.out or asked.folder / "view.html"
     check_output_file(out, overwrite=asked.overwrite)
     from mmweaver.io.stored_result import read_result
