@@ -399,4 +399,9 @@ ROWS = (
         (instead("give a folder of mmweaver generate", "{nothing}", "{walk}"),),
     ),
     Row("--sequence is of a labelled set", "plot {walk} --sequence 1 -o out.png", (drop("--sequence"),)),
+    Row(
+        "□ is a file; give a folder of mmweaver generate or mmweaver process",
+        "view {rgb} -o page.html --no-browser",
+        (instead("give a folder of mmweaver generate", "{rgb}", "{walk}"),),
+    ),
 )
