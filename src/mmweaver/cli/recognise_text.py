@@ -19,7 +19,7 @@ def training_lines(model: "Recogniser", out: Path) -> list[str]:
         f"generated people held out: balanced accuracy {expected['balanced_accuracy']:.2f} (chance"
         f" {expected['chance']:.2f}); recordings of people are harder: mmweaver recognise score tells",
         *confused_lines(model.labels, expected["confusion"]),
-        "moving points a frame: "
+        "moving points per frame: "
         + ", ".join(f"{label} {count:g}" for label, count in meta["moving_points_a_frame"].items()),
     ]
     if "labelled_windows" in meta:
@@ -62,7 +62,7 @@ def score_lines(scores: dict[str, Any]) -> list[str]:
     text.append(f"  from generated windows: {compared}{far['windows_outside']:.0%} of windows are unlike any")
     count = far["moving_points_a_frame"]
     if count["generated"] is not None:
-        text.append(f"  moving points a frame: {count['recorded']:g} recorded, {count['generated']:g} generated")
+        text.append(f"  moving points per frame: {count['recorded']:g} recorded, {count['generated']:g} generated")
     text += [f"  {line}" for line in scores["hardly_distinct"]] + contradiction_lines(scores["contradictions"])
     text += [f"  {one}; name `background` or `unlabelled`, so that run does so, too" for one in scores["left_out"]]
     return text + ([f"  warning: {scores['warning']}"] if scores["warning"] else [])
