@@ -7,21 +7,17 @@ Frozen dataclasses of tensors or arrays that are moved, stacked, joined and inde
 
 import hashlib
 import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files import safe_tensors
 from mmweaver.core.safe_files.safe_text import parse_json
-
-if TYPE_CHECKING:
-    from torch import Tensor
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeVar
-
-import numpy as np
 
 if TYPE_CHECKING:
     from torch import Tensor

@@ -11,22 +11,17 @@ Reference: linear Gaussian conditioning (Rasmussen and Williams, Gaussian Proces
 
 from collections.abc import Sequence
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import torch
 from torch import Tensor
 
-from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.seeding import stream
-
-if TYPE_CHECKING:
-    from mmweaver.propagation.board_effects import BoardEffects
-from dataclasses import fields, replace
-
 from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import RadarCube
+from mmweaver.core.seeding import stream
 from mmweaver.propagation.cube_rendering import CubeRenderer
 from mmweaver.propagation.mean_power import MeanPower
 from mmweaver.propagation.paths import StaticPaths
@@ -38,6 +33,10 @@ from mmweaver.signal.spectra import (
     range_azimuth_power,
     range_doppler_power,
 )
+
+if TYPE_CHECKING:
+    from mmweaver.propagation.board_effects import BoardEffects
+
 
 MISFIT = 0.01  # share of the recording's mean power that a photo's geometry cannot explain
 SHOWN = 1e-4  # cells above this share of the strongest are used to compare levels

@@ -13,6 +13,7 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
 from mmweaver.core.virtual_array import resolves_elevation
+from mmweaver.signal.doppler_spectrogram import MicroDoppler
 from mmweaver.signal.features import (
     DRAI_SIZE,
     dynamic_range_angle,
@@ -21,21 +22,20 @@ from mmweaver.signal.features import (
     range_doppler_db,
     range_elevation_db,
 )
-from mmweaver.signal.spectra import azimuth_axis_rad, elevation_axis_rad
-from mmweaver.viz.figure_data import Fan, FigureData
-from mmweaver.viz.panels import VELOCITY, draw_points_top, velocity_bar
-from mmweaver.viz.theme import PowerScale, evenly_spaced, label_axes, page
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-from typing import TYPE_CHECKING
-
-from mmweaver.signal.doppler_spectrogram import MicroDoppler
 from mmweaver.signal.slow_time import SlowTimeCell
+from mmweaver.signal.spectra import azimuth_axis_rad, elevation_axis_rad
 from mmweaver.signal.tracking import PersonTrack
 from mmweaver.signal.vital_signs import Rate
-from mmweaver.viz.panels import draw_displacement, draw_slow_doppler, draw_spectrogram
-from mmweaver.viz.theme import INK, PEOPLE_ON_WHITE
+from mmweaver.viz.figure_data import Fan, FigureData
+from mmweaver.viz.panels import (
+    VELOCITY,
+    draw_displacement,
+    draw_points_top,
+    draw_slow_doppler,
+    draw_spectrogram,
+    velocity_bar,
+)
+from mmweaver.viz.theme import INK, PEOPLE_ON_WHITE, PowerScale, evenly_spaced, label_axes, page
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

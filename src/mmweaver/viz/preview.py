@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from mmweaver.core.virtual_array import resolves_elevation
 from mmweaver.viz import panels
+from mmweaver.viz.animation import draw_animation
 from mmweaver.viz.figure_data import FigureData
 from mmweaver.viz.theme import page
 
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     Panel = Callable[[Axes, FigureData], None]
-from mmweaver.viz.animation import draw_animation
 
 
 def draw_preview(view: FigureData, path: Path | None) -> "Figure":

@@ -3,29 +3,24 @@
 One scale of decibels, including the noise level, for all pictures of a cube: an echo has the same colour in each.
 """
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.figure import Figure
-    from matplotlib.ticker import MaxNLocator
-import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
 from jaxtyping import Float
 
 from mmweaver.core.shapes import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.figure import Figure
     from matplotlib.image import AxesImage
+    from matplotlib.ticker import MaxNLocator
 
 
 POWER_MAP, TIME_MAP, VELOCITY_MAP = "inferno", "viridis", "coolwarm"

@@ -20,6 +20,7 @@ from mmweaver.core.optional_packages import need
 from mmweaver.core.repository_files import repository_file
 from mmweaver.core.safe_files.array_checks import ArrayChecks
 from mmweaver.core.safe_files.safe_arrays import read_npy
+from mmweaver.core.skeleton import PARENTS
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.joint_arrays import CONTACTS, FPS, NUM_FEATURES, joints_from_features
 from mmweaver.motion.motiongpt.checkpoint import (
@@ -51,8 +52,6 @@ from mmweaver.motion.motiongpt.tokenizer import MotionTokenizer
 
 if TYPE_CHECKING:
     from transformers import PreTrainedTokenizerBase, T5ForConditionalGeneration
-
-from mmweaver.core.skeleton import PARENTS
 
 
 def fix_bone_lengths(joints: Float[np.ndarray, "frame 22 3"]) -> Float[np.ndarray, "frame 22 3"]:
