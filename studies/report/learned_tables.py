@@ -82,23 +82,6 @@ PEERS = RowTable(
         ("CPU, s", "{metrics.cpu_s:fixed.1}"),
     ),
 )  # fmt: skip
-DIFFUSION = RowTable(
-    sources=("diffusion_scores/test_room",),
-    labels={
-        "zeros": "all zeros (baseline)",
-        "training_mean": "the mean of the training rooms (baseline)",
-        "nearest_training_pose": "the training sequence of the nearest poses (baseline)",
-        "diffusion_from_noise": "the diffusion, from noise",
-        "truth_with_noise": "the ground truth at weight 0.925 with noise, no network (baseline of the next row)",
-        "diffusion_truth_given": "the diffusion, from there (the published protocol)",
-        "realization": "the true room, random phases (oracle)",
-    },
-    columns=(
-        ("made by", "{label}"), ("rooms", "{n}"), ("range-azimuth, SSIM", "{metrics.ra_ssim:interval.2}"),
-        ("range-Doppler, SSIM", "{metrics.rd_ssim:interval.2}"),
-        ("cSSIM", "{metrics.cssim:fixed.3}"), ("PSNR, dB", "{metrics.psnr_db:fixed.1}"),
-    ),
-)  # fmt: skip
 PEER_CLUTTER = RowTable(
     sources=("peer_scores/clutter",),
     columns=(
@@ -127,23 +110,6 @@ OTHER_RADARS = PivotTable(
     cells={name: ((f"{name}, RA / RD", "{metrics.ra_ssim:fixed.2} / {metrics.rd_ssim:fixed.2}"),)
            for name in ("zeros", "generic_room_physics", "weaver", "physics_in_photographed_room", "realization")},
 )  # fmt: skip
-FEW_SHOT = RowTable(
-    sources=("few_shot/jumping",),
-    columns=(
-        ("tuned on", "{method}"), ("RA SSIM", "{metrics.ra_ssim:interval.2}"),
-        ("RD SSIM", "{metrics.rd_ssim:interval.2}"), ("RA difference, dB", "{metrics.ra_difference_db:fixed.2}"),
-        ("RD difference, dB", "{metrics.rd_difference_db:fixed.2}"),
-    ),
-)  # fmt: skip
-CAPTURE_TUNING = RowTable(
-    sources=("capture_tuning/test_room",),
-    columns=(
-        ("method", "{method}"), ("RA SSIM", "{metrics.ra_ssim:interval.2}"),
-        ("RD SSIM", "{metrics.rd_ssim:interval.2}"), ("RA difference, dB", "{metrics.ra_difference_db:interval.2}"),
-        ("RD difference, dB", "{metrics.rd_difference_db:interval.2}"),
-        ("Chamfer, m", "{metrics.chamfer_m:interval.2}"),
-    ),
-)  # fmt: skip
 PAPER_COLUMNS = (
     ("cSSIM", "{metrics.cssim:fixed.3}"), ("PSNR, dB", "{metrics.psnr_db:fixed.1}"),
     ("NMSE, all cells, dB", "{metrics.nmse_db:fixed.2}"), ("active, dB", "{metrics.nmse_active_db:fixed.2}"),
@@ -155,15 +121,6 @@ PAPER_FEW = RowTable(
     sources=("paper_scores/few_train", "paper_scores/few_test_room"),
     columns=(("method", "{method}"), ("evaluated on", "{dataset.split:split}"), *PAPER_COLUMNS),
 )
-ACCURACY = RowTable(
-    sources=("activity_accuracy/activity",), key="dataset.split",
-    labels={"test_room": "kinds of rooms", "test_layout": "layouts of known kinds", "test_person": "a person"},
-    columns=(
-        ("not seen before", "{label}"), ("sequences", "{n}"), ("rooms", "{num_rooms}"),
-        ("accuracy", "{metrics.accuracy:percent_interval.1}"),
-        ("chance", "{metrics.accuracy.baseline.chance:percent.0}"),
-    ),
-)  # fmt: skip
 
 
 def _gain(source: str) -> RowTable:
@@ -194,12 +151,9 @@ COST = MatrixTable(
 )  # fmt: skip
 LEARNED = {
     "peer_scores": PEERS, "peer_clutter": PEER_CLUTTER,
-    "diffusion_scores": DIFFUSION,
-
     "learned_scores": SCORES, "learned_summary": SUMMARY, "learned_unseen": UNSEEN,
     "other_radars": OTHER_RADARS,
-    "few_shot": FEW_SHOT, "capture_tuning": CAPTURE_TUNING,
-    "paper_scores": PAPER, "paper_scores_few": PAPER_FEW, "activity_accuracy": ACCURACY,
+    "paper_scores": PAPER, "paper_scores_few": PAPER_FEW,
     "activity_gain": _gain("activity_gain/test_room"), "activity_gain_60": _gain("activity_gain/recordings_60"),
     "learned_cost": COST, "power_scores": POWER,
 }  # fmt: skip

@@ -8,7 +8,6 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from studies.report.board_tables import BOARDS
 from studies.report.computed_tables import (
     ablation_table,
     activities_table,
@@ -16,12 +15,10 @@ from studies.report.computed_tables import (
     codec_margins_table,
     codecs_table,
     statistics_table,
-    zero_shot_table,
 )
 from studies.report.learned_tables import LEARNED
 from studies.report.paper_items import paper_table
 from studies.report.table_layouts import MatrixTable, MetricTable, PivotTable, RowTable
-from studies.report.zero_shot_tables import CURVE_CELLS, ZERO_SHOT
 
 SCORES = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
 FIDELITY = RowTable(
@@ -52,11 +49,6 @@ SAMPLING_RADIUS = PivotTable(
     cells={name: ((head, "{metrics.nmse_db:number}"),) for name, head in RADIUS_COLUMNS.items()},
     order=tuple(("sampled_places", str(radius)) for radius in range(1, 8)),
 )
-LOSSLESS = RowTable(
-    sources=("lossless_codecs/*",),
-    columns=(("recording", "{dataset.name}"), ("codec", "{record.method}"), ("bytes", "{size.bytes:,}"),
-             ("of the raw words", "{metrics.share:percent.1}"), ("CPU s", "{seconds.cpu:.2f}")),
-)  # fmt: skip
 CODEC_SECONDS = PivotTable(
     sources=("codecs/mmw",), rows=(("signal", "{dataset.name}"),), across="{size.bytes_allowed}", sorts=True,
     head_template="{size.bytes_allowed:,} B", cell_template="{seconds.encode_cpu:.1f}",
@@ -113,29 +105,6 @@ REAL_ROOMS = RowTable(
         ("a random bin", "{metrics.frames_with_person_in_place.baseline.random_bin:percent.0}"),
     ),
 )  # fmt: skip
-PEOPLE_SCORES = (
-    ("nmse_active_db", "error energy, active cells (dB)"), ("nmse_moving_db", "error energy, moving cells (dB)"),
-    ("rd_ssim", "range-Doppler SSIM"), ("ra_ssim", "range-azimuth SSIM"), ("chamfer_m", "Chamfer of the points (m)"),
-    ("hausdorff_m", "Hausdorff of the points (m)"),
-)  # fmt: skip
-ARRANGEMENT = "{dataset.name} ({n})"
-MULTI_PERSON = MetricTable(
-    sources=("multi_person_scores/superposition",),
-    columns=(
-        ("arrangement (pairs)", ARRANGEMENT), ("score", "{label}"), ("plain sum (95 %)", "{metric:number_interval}"),
-        ("without the second", "{metric.baseline.without_second:number}"),
-        ("other noise", "{metric.oracle.other_noise:number}"),
-        ("other realization", "{metric.oracle.realization:number}"),
-    ),
-    lines=(
-        *PEOPLE_SCORES,
-        ("second_dimmed_db", "*occlusion dims the second by (dB)*",
-         (ARRANGEMENT, "{label}", "{metric:number_interval}", "", "", "")),
-        ("points_of_second", "*points a frame at the second*",
-         (ARRANGEMENT, "{label}", "{metric:number_interval}; with mutual occlusion {metric.oracle.mutual:number}",
-          "{metric.baseline.without_second:number}", "", "")),
-    ),
-)  # fmt: skip
 AFFORDANCES = MatrixTable(
     sources=("affordances/*",), corner="what", head="{dataset.name}, {record.method} ({n})",
     lines=(
@@ -190,20 +159,6 @@ MARS_VALIDATE_ROWS = (
 MARS_VALIDATE = replace(
     MARS, sources=("mars_validate/*",), labels={name: name.replace("_", " ") for name in MARS_VALIDATE_ROWS}
 )
-REALISM = MetricTable(
-    sources=("motion_realism/library",),
-    columns=(
-        ("of", "{dataset.name} ({n})"), ("figure", "{words}"), ("ours", "{metric:.3g}{space_unit}"),
-        ("recorded: 5 %, middle, 95 %", "{metric:recorded}"), ("", "{outside}"),
-    ),
-)  # fmt: skip
-MARS_EXERCISES = MetricTable(
-    sources=("mars_exercises/library",),
-    columns=(
-        ("exercise", "{dataset.name}"), ("figure", "{words}"), ("ours", "{metric:.2f}{space_unit}"),
-        ("recorded", "{metric.recorded:.2f}"), ("mean pose", "{metric.baseline.mean_pose:.2f}"),
-    ),
-)  # fmt: skip
 KITML = MetricTable(
     sources=("kitml/reading",),
     columns=(("share", "{label}"), ("n", "{metric.n:,}"), ("value", "{metric:percent.1}"),
@@ -273,15 +228,6 @@ STRANGERS = MetricTable(
         ("approximated", "of all: a clause approximated or not shown, and said so"),
     ),
 )  # fmt: skip
-MOTIONGPT = RowTable(
-    sources=("motiongpt/*",),
-    columns=(
-        ("motions", "{dataset.name}"), ("first of 12", "{metrics.r_precision_1:percent_interval.0}"),
-        ("among first 3", "{metrics.r_precision_3:percent_interval.0}"),
-        ("bones stretch", "{metrics.bone_spread:percent.1}"),
-    ),
-    footer=(("chance", "8 %", "25 %", ""),),
-)  # fmt: skip
 BLIND = RowTable(
     sources=("blind_recognition/*",),
     columns=(
@@ -292,21 +238,17 @@ BLIND = RowTable(
         ("windows outside", "{distance.windows_outside:.2f}"),
     ),
 )  # fmt: skip
-ELSEWHERE = RowTable(
-    sources=("recognised_elsewhere/*",),
-    columns=(
-        ("strangers", "{dataset.name}"), ("windows", "{metrics.window:interval.2}"),
-        ("a recording", "{metrics.recording:interval.2}"), ("chance", "{metrics.window.baseline.chance:.2f}"),
-        ("windows outside", "{distance.windows_outside:.2f}"), ("`score` says", "{said}"),
-    ),
-)  # fmt: skip
+CURVE_CELL = "{metrics.window:.3f} ({metrics.window.lowest:.3f} to {metrics.window.highest:.3f})"
 LABELLED = PivotTable(
     sources=("labelled_recognition/*",),
     rows=(("task", "{dataset.name}"), ("recordings of each", "{real_recordings_each}")), across="{generated}",
-    cells={"False": CURVE_CELLS["False"],
-           "True": (*CURVE_CELLS["True"], ("difference", "{metrics.gain:signed_interval.3}"))},
+    cells={"False": (("without", CURVE_CELL),),
+           "True": (("with generated windows", CURVE_CELL), ("difference", "{metrics.gain:signed_interval.3}"))},
     missing="",
 )  # fmt: skip
+LABELLED_RADHAR = replace(
+    LABELLED, sources=("labelled_recognition/radhar",), rows=(("real recordings of each", "{real_recordings_each}"),)
+)
 
 ZERO_SHOT_POSE = RowTable(
     sources=("zero_shot_pose/mars_*",),
@@ -325,64 +267,24 @@ POSE_CURVE = RowTable(
         ("without, legs", "{metrics.centroid_legs.baseline.without_generated:.1f}"),
     ),
 )  # fmt: skip
-SAMPLED = RowTable(
-    sources=("sampled_recordings/*",),
-    columns=(
-        ("training", "{method}"), ("sequences", "{n}"), ("accuracy", "{metrics.accuracy:interval.2}"),
-        ("less the baseline", "{metrics.gain:interval.2}"),
-    ),
-)  # fmt: skip
-GAIN_BY_NETWORK = PivotTable(
-    sources=("recogniser_gain/few_recordings",), rows=(("training", "{method}"),), across="{network} {test}",
-    cell_template="{metrics.accuracy:interval.2}",
-)  # fmt: skip
-GAIN_BY_CLUTTER = replace(GAIN_BY_NETWORK, sources=("recogniser_gain/clutter",))
-POSE_GAIN = RowTable(
-    sources=("pose_gain/*",),
-    columns=(
-        ("test", "{test}"), ("sequences", "{n}"), ("mean pose (baseline)", "{metrics.root.baseline.mean_pose:.1f}"),
-        ("without generated", "{metrics.root.baseline.without_generated:.1f}"),
-        ("with generated", "{metrics.root:.1f}"),
-        ("mean pose, centroid", "{metrics.centroid.baseline.mean_pose:.1f}"),
-        ("without, centroid", "{metrics.centroid.baseline.without_generated:.1f}"),
-        ("with, centroid", "{metrics.centroid:.1f}"),
-    ),
-)  # fmt: skip
-
-FAULTS = RowTable(
-    sources=("injected_faults/*",),
-    columns=(
-        ("command", "`{dataset.name}`"), ("events", "{events}"),
-        *((head, f"{{metrics.{kind}:.0f}} of {{tried.{kind}}}") for kind, head in (
-            ("kill", "killed"), ("full", "disk full from there on"), ("once", "one write fails"),
-            ("large", "no larger file"), ("disk", "small disk"))),
-    ),
-)  # fmt: skip
 
 TABLES: dict[str, Callable[[Path], str]] = {
     "paper": paper_table, "sampling_radius": SAMPLING_RADIUS.render,
     "field_fidelity": FIDELITY.render, "super_resolution": SUPER_RESOLUTION.render,
     "codecs": codecs_table, "codec_margins": codec_margins_table, "codec_cuts": codec_cuts_table,
-    "lossless_codecs": LOSSLESS.render,
     "codec_seconds": CODEC_SECONDS.render,
     "physics": PHYSICS.render, "dataset_cost": DATASET_COST.render,
     "checksums_cost": CHECKSUMS_COST.render,
     "real_rooms": REAL_ROOMS.render, "real_placements": REAL_PLACEMENTS.render, "affordances": AFFORDANCES.render,
-    "multi_person": MULTI_PERSON.render, "signal_statistics": statistics_table, "mars": MARS.render,
+    "signal_statistics": statistics_table, "mars": MARS.render,
     "mars_validate": MARS_VALIDATE.render,
-    "motion_realism": REALISM.render,
-    "mars_exercises": MARS_EXERCISES.render,
     "kitml": KITML.render, "strangers": STRANGERS.render,
     **{name: table.render for name, table in UNREAD.items()},
-    "activities": activities_table, "captions_draws": CAPTIONS_DRAWS.render, "motiongpt": MOTIONGPT.render,
-    "zero_shot": zero_shot_table, **{name: table.render for name, table in ZERO_SHOT.items()},
-    "blind_recognition": BLIND.render, "recognised_elsewhere": ELSEWHERE.render,
+    "activities": activities_table, "captions_draws": CAPTIONS_DRAWS.render,
+    "blind_recognition": BLIND.render,
     "zero_shot_pose": ZERO_SHOT_POSE.render,
-    "pose_gain": POSE_GAIN.render, "pose_curve": POSE_CURVE.render,
-    "recogniser_gain": GAIN_BY_NETWORK.render, "recogniser_clutter": GAIN_BY_CLUTTER.render,
-    "sampled_recordings": SAMPLED.render,
-    "labelled_recognition": LABELLED.render,
-    "injected_faults": FAULTS.render,
+    "pose_curve": POSE_CURVE.render,
+    "labelled_recognition": LABELLED.render, "labelled_radhar": LABELLED_RADHAR.render,
     "ablation": ablation_table, "ablation_power": partial(ablation_table, folder="ablation_power"),
-    **{name: table.render for name, table in (*LEARNED.items(), *BOARDS.items())},
+    **{name: table.render for name, table in LEARNED.items()},
 }  # fmt: skip
