@@ -175,20 +175,6 @@ def placements(index: int) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def real_placements(folder: Path, num_seeds: int) -> dict[str, Any]:
-    """The same of a photographed room, its six sentences and some seeds."""
-    from studies.scene import real_placements as study
-
-    vars(study)["SEEDS"] = range(num_seeds)
-    row = study.room_row(folder)
-    counts = {
-        name: row["metrics"][long] for name, long in (("clear", "placements_clear"), ("arms_clear", "arms_clear"))
-    }
-    return {name: [round(one["value"] * one["of"]), one["of"]] for name, one in counts.items()} | {
-        "refused": row["refused"], "floor_error_m": row["metrics"]["floor_error_m"]["value"],
-    }  # fmt: skip
-
-
 # RadHAR -------------------------------------------------------------------------------------------------------------
 def score_of_shipped(data: Path) -> dict[str, Any]:
     """The shipped recogniser on the half of RadHAR's recordings that its method was developed on."""

@@ -21,7 +21,7 @@ GOLDEN = ROOT / "tests" / "golden"
 TEXTS = (("a person waves with the left hand", 12), ("a man boxes quickly", 12),
          ("a person walks to the left, then squats", 30))  # fmt: skip
 SEEDS = (0, 7)
-PROCEDURAL_ROOMS, REAL_SEEDS = 60, 2
+PROCEDURAL_ROOMS = 60
 PERSON = re.compile(
     r"^(?:(?:an?|the|one|another|some|this|two|three)\s+)?(?:\w+[\s-]){0,3}?(?:person|man|woman|boy|girl|lady|guy|user|"
     r"human|subject|someone|somebody|he|she|they|people|figure|child|kid|individual|patient|dancer|toddler|nurse)\s+\w",
@@ -295,8 +295,6 @@ def lossless(recording: Path, max_error: int) -> dict[str, Any]:
 def placements(folders: Folders) -> Iterator[tuple[str, Thunk]]:
     for index in range(PROCEDURAL_ROOMS):
         yield f"procedural/{index:02d}", lambda index=index: code.placements(index)
-    for folder in sorted((folders.data / "rooms").glob("*/camera.json")):
-        yield f"real/{folder.parent.name}", lambda folder=folder: code.real_placements(folder.parent, REAL_SEEDS)
 
 
 def radhar(folders: Folders) -> Iterator[tuple[str, Thunk]]:

@@ -82,14 +82,6 @@ PEERS = RowTable(
         ("CPU, s", "{metrics.cpu_s:fixed.1}"),
     ),
 )  # fmt: skip
-PEER_CLUTTER = RowTable(
-    sources=("peer_scores/clutter",),
-    columns=(
-        ("clutter", "{clutter}"), ("made by", "{method}"), ("rooms", "{n}"),
-        ("range-azimuth, SSIM", "{metrics.ra_ssim:interval.2}"),
-        ("range-Doppler, SSIM", "{metrics.rd_ssim:interval.2}"), ("cSSIM", "{metrics.cssim:fixed.3}"),
-    ),
-)  # fmt: skip
 UNSEEN_METHODS = (
     "nearest_training_pose", "weaver", "weaver_with_background", "physics_in_photographed_room", "realization",
 )  # fmt: skip
@@ -150,7 +142,7 @@ COST = MatrixTable(
     ),
 )  # fmt: skip
 LEARNED = {
-    "peer_scores": PEERS, "peer_clutter": PEER_CLUTTER,
+    "peer_scores": PEERS,
     "learned_scores": SCORES, "learned_summary": SUMMARY, "learned_unseen": UNSEEN,
     "other_radars": OTHER_RADARS,
     "paper_scores": PAPER, "paper_scores_few": PAPER_FEW,
