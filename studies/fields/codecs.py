@@ -27,7 +27,7 @@ from studies.baselines.network_codecs import InrInBytes
 from studies.baselines.tensor_codecs import Cp, TruncatedSvd, Tucker
 from studies.fields.field_signals import RECORDED, SIGNALS, StudySignal
 from studies.manifest import StudyRun
-from studies.result_rows import complete_rows, in_order, kept_rows
+from studies.result_rows import complete_rows
 from studies.scores.cube_scores import BASELINES, cells_of, nmse_db
 from studies.scores.scorecard import METRICS
 from studies.study import Reads
@@ -129,19 +129,12 @@ def measure(
     signal_names: list[str],
     data: Path | None,
     sizes: tuple[int, ...],
-    *,
-    keep: bool = False,
 ) -> None:
-    """Every codec on every signal at every size; one file a codec, written when the codec is done.
-
-    With `keep`, rows of other signals are copied from the results of an earlier run, each with its own commit.
-    """
+    """Every codec on every signal at every size; one file a codec, written when the codec is done."""
     signals = [SIGNALS[name](data) for name in signal_names]
     for name in codec_names:
         codec = CODECS[name]()
         rows = [codec_row(codec, signal, size) for signal in signals for size in sizes]
-        kept = kept_rows(run.out / EXPERIMENT / f"{name}.json", signal_names) if keep else []
-        rows = in_order(rows + kept, list(SIGNALS))
         path = run.write(EXPERIMENT, name, config={"sizes": list(sizes)}, rows=complete_rows(rows))
         print(json.dumps({"codec": name, "written": str(path)}), flush=True)
 
@@ -153,10 +146,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--codecs", nargs="*", default=list(CODECS))
     parser.add_argument("--signals", nargs="*", default=None)
     parser.add_argument("--sizes", nargs="*", type=int, default=SIZES)
-    parser.add_argument("--keep", action="store_true", help="keep the rows of signals that are not measured now")
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     every = [name for name in SIGNALS if options.data is not None or name not in RECORDED]
     signals = options.signals or every
-    measure(run, options.codecs, signals, options.data, tuple(options.sizes), keep=options.keep)
+    measure(run, options.codecs, signals, options.data, tuple(options.sizes))

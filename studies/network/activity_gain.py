@@ -364,7 +364,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--rooms", type=int, default=40)
     parser.add_argument("--each", type=int, default=2, help="generated motions of each activity")
     parser.add_argument("--recordings", type=int, default=60, help="of other rooms, for a head that begins anew")
-    parser.add_argument("--only", nargs="*", help="methods (default: all)")
     parser.add_argument("--runs", type=Path, help="folder for rooms that are done")
 
 
@@ -375,7 +374,6 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     weaver, card = load_weights(weights)
     studies = gain_studies(options.recogniser, options.data, options.recordings)
     methods = methods_of(weaver)
-    methods = {name: methods[name] for name in options.only or methods}
     about = {"weights": asdict(card), "data_plan": plan, "each": options.each, "steps": STEPS}
     files = [digest(file) for file in (weights, options.recogniser)]
     names = [room.name for room in rooms]

@@ -314,7 +314,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--split", default="test_room")
     parser.add_argument("--each", type=int, default=1, help="sequences of each room")
     parser.add_argument("--most", type=int, help="rooms, sampled at random (default: all that have the split)")
-    parser.add_argument("--only", nargs="*", help="rows (default: all)")
     parser.add_argument("--runs", type=Path, help="folder for what is done, to go on from")
     parser.add_argument("--called", metavar="NAME", help="the result's name (default: the split)")
     parser.add_argument("--other-radar", metavar="NAME", help="data of another radar or length: a result of this name")
@@ -345,8 +344,6 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         recipe = PowerRecipe(is_anchored=bool(power_card.settings.get("is_anchored", True)))
         methods["paper_power_untrained"] = learned(initial_power_network(recipe).eval(), lambda case: case.room)
         about["paper_power"] = power_card.__dict__
-    if options.only:
-        methods = {name: methods[name] for name in options.only}
     names = [f"{case.room.kind}_{case.room.layout}" for case in cases]
     of = dict.fromkeys(WEAVER_ROWS, weights) | dict.fromkeys(POWER_ROWS, options.power)
     made_by = {name: digest(of[name]) if name in of else None for name in methods}

@@ -17,7 +17,6 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -97,25 +96,15 @@ def scores_of(case: Case, truth: Callable[[], Representations], name: str, metho
     return {**{column: METRICS[column].score(prediction, reference) for column in COLUMNS}, "cpu_s": seconds}
 
 
-def kinds_in_turn(cases: list[Case]) -> list[Case]:
-    """The cases in an order that takes one room of each kind after the other, so that any first part is balanced."""
-    of_kind: dict[str, list[Case]] = {}
-    for case in cases:
-        of_kind.setdefault(case.room.kind, []).append(case)
-    return [case for turn in zip_longest(*of_kind.values()) for case in turn if case is not None]
-
-
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, action=Reads, required=True, help="of mmweaver dataset, with signals")
     parser.add_argument("--split", default="test_room")
-    parser.add_argument("--most", type=int, default=ROOMS, help="of the 48 rooms, the kinds in turn")
     parser.add_argument("--runs", type=Path, help="folder for what is done, to go on from")
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     plan = read_plan(options.data)
     cases = cases_of(read_rooms(options.data), options.split, 1, plan, 0, ROOMS)
-    cases = kinds_in_turn(cases)[: options.most]
     network, card = load_weights(shipped_weights())
     methods = methods_of(network, make_room("office", 0, plan["seed"]).scene("day"))
     about = {"data_plan": plan, "weights": digest(shipped_weights()), "columns": COLUMNS}

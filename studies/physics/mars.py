@@ -37,8 +37,7 @@ from mmweaver.signal.firmware import FirmwareCloud, firmware_points
 from studies.manifest import StudyRun
 from studies.physics.cloud_scores import CloudScores, part_of, score
 from studies.physics.empty_room_cube import empty_room
-from studies.physics.mars_data import FRAME_S, MarsStretch, read_mars
-from studies.physics.mars_pieces import as_published, body_height_m, cut, pose_of
+from studies.physics.mars_data import FRAME_S, MarsStretch, as_published, body_height_m, cut, pose_of, read_mars
 from studies.result_rows import complete_rows
 from studies.study import Reads
 

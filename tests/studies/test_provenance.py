@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mmweaver.core.version import __version__
-from studies.provenance import hardware, provenance
+from studies.manifest import hardware, provenance
 
 
 def git(root: Path, *words: str) -> str:

@@ -19,8 +19,7 @@ from studies.physics.mars import (
     simulate,
     surface_baseline,
 )
-from studies.physics.mars_data import MarsStretch, read_mars
-from studies.physics.mars_pieces import cut
+from studies.physics.mars_data import MarsStretch, cut, read_mars
 from tests.studies.physics.test_mars_data import write_split
 
 HERE = Setup(shift_m=(0.0, 0.0, 0.2), height_m=1.75)
