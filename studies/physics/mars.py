@@ -115,27 +115,20 @@ def calibrate(pieces: list[MarsStretch], report: Callable[[str], object] = print
     setup = Setup(height_m=round(body_height_m(pieces), 2), shift_m=(0.0, 0.0, HEIGHTS_M[0]))
     setup = _own_levels(pieces, _centred(pieces, setup, real), real)
     x, y, _ = setup.shift_m
-    setup = _best([replace(setup, shift_m=(x, y, z)) for z in HEIGHTS_M], pieces, real, report)
-    setup = _elevated(pieces, setup, real, report)
+    tried = [replace(setup, shift_m=(x, y, z)) for z in HEIGHTS_M]
+    setup = _best(tried, [_simulated(pieces, one) for one in tried], real, report)
+    adcs, tried = simulate(pieces, setup), [replace(setup, elevation_deg=degrees) for degrees in ELEVATIONS_DEG]
+    setup = _best(tried, [detect(adcs, pieces, one) for one in tried], real, report)
     setup = _own_levels(pieces, _centred(pieces, setup, real), real)
     report(f"estimated: {setup}")
     return setup
 
 
-def _best(tried: list[Setup], pieces: list[MarsStretch], real: Clouds, report: Callable[[str], object]) -> Setup:
-    distance = [score(_simulated(pieces, setup), real).value("chamfer_m") for setup in tried]
+def _best(tried: list[Setup], clouds: list[Clouds], real: Clouds, report: Callable[[str], object]) -> Setup:
+    """The setup whose clouds are nearest to the recorded ones."""
+    distance = [score(one, real).value("chamfer_m") for one in clouds]
     for setup, found in zip(tried, distance, strict=True):
         report(f"Chamfer {found:.3f} m: {setup}")
-    return tried[int(np.argmin(distance))]
-
-
-def _elevated(pieces: list[MarsStretch], setup: Setup, real: Clouds, report: Callable[[str], object]) -> Setup:
-    """The phase of the elevated transmitter, of one simulation."""
-    adcs = simulate(pieces, setup)
-    tried = [replace(setup, elevation_deg=degrees) for degrees in ELEVATIONS_DEG]
-    distance = [score(detect(adcs, pieces, one), real).value("chamfer_m") for one in tried]
-    for one, found in zip(tried, distance, strict=True):
-        report(f"Chamfer {found:.3f} m: elevation {one.elevation_deg:+g} degrees")
     return tried[int(np.argmin(distance))]
 
 
