@@ -14,6 +14,7 @@ import pytest
 from mmweaver.core.atomic_files import atomic_file, atomic_files, create_once, staged_folder, written
 from mmweaver.core.checksums import SUMS_FILE, damages, read_sums
 from mmweaver.core.errors import InputError
+from mmweaver.core.output_checks import check_output_file
 from mmweaver.core.staging import COMMITTED, staging_path
 
 
@@ -201,10 +202,11 @@ def test_what_another_host_writes_stays_for_an_hour_after_its_last_change(
     assert other.exists() == is_kept
 
 
-def test_a_link_is_followed(tmp_path: Path):
+def test_a_link_that_was_named_is_followed(tmp_path: Path):
     (tmp_path / "real").mkdir()
     (tmp_path / "out").symlink_to("real")
     (tmp_path / "file.txt").symlink_to("real/file.txt")
+    check_output_file(tmp_path / "file.txt", overwrite=False)
     with staged_folder(tmp_path / "out") as stage:
         (stage / "a.txt").write_text("a")
     with atomic_file(tmp_path / "file.txt") as temporary:
@@ -212,6 +214,16 @@ def test_a_link_is_followed(tmp_path: Path):
     assert (tmp_path / "real" / "file.txt").read_text() == "b"
     assert (tmp_path / "out").is_symlink()
     assert (tmp_path / "file.txt").is_symlink()
+
+
+def test_a_link_that_is_found_is_replaced(tmp_path: Path):
+    (tmp_path / "theirs.txt").write_text("theirs")
+    (tmp_path / "file.txt").symlink_to("theirs.txt")
+    with atomic_file(tmp_path / "file.txt") as temporary:
+        temporary.write_text("mine")
+    assert (tmp_path / "theirs.txt").read_text() == "theirs"
+    assert (tmp_path / "file.txt").read_text() == "mine"
+    assert not (tmp_path / "file.txt").is_symlink()
 
 
 def test_a_file_that_another_command_replaces_leaves_the_checksums(tmp_path: Path):
