@@ -70,16 +70,3 @@ def test_an_unknown_activity_says_what_comes_nearest_and_where_all_are_listed():
         parse("the person teleports")
     with pytest.raises(InputError, match="'a person dances'"):
         parse("a person grooves along")
-
-
-def test_what_is_left_aside_is_told():
-    assert any("'zealously'" in note for note in parse("walks zealously").notes)
-    assert any("distance" in note for note in parse("jumps 2 meters forward").notes)
-    assert parse("walks 2 meters").steps[0].distance_m == 2.0
-    assert any("right in the photo" in note for note in parse("walks to her left").notes)
-    assert parse("a person walks to the left, then sits down").notes == ()
-
-
-def test_case_punctuation_and_fillers_change_nothing():
-    assert said(parse("The MAN, walks!  To the LEFT...")) != ""
-    assert said(parse("Please: a person WAVES.")) == "waving"
