@@ -155,13 +155,7 @@ def test_an_old_option_of_a_file_is_read_and_warned_of_once(
     assert line.split(" =")[0] in warned
 
 
-@pytest.mark.parametrize(
-    ("line", "way"),
-    [
-        ('sam = "sam"', "sam=NAME"),
-        ("store = true", "--activities"),
-    ],
-)
+@pytest.mark.parametrize(("line", "way"), [('sam = "sam"', "sam=NAME"), ("store = true", "--activities")])
 def test_an_old_option_that_is_gone_says_what_to_do(line: str, way: str, tmp_path: Path):
     (tmp_path / "run.toml").write_text(f"{line}\n")
     with pytest.raises(InputError, match=f"--{line.split()[0]} is gone") as raised:

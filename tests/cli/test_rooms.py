@@ -36,11 +36,7 @@ def test_rooms_are_repeated_by_their_request(tmp_path: Path):
 
 @pytest.mark.parametrize(
     ("words", "complaint"),
-    [
-        (["--rooms", "castle"], "known: office"),
-        (["--layouts", "0"], "--layouts"),
-        (["--seed", "-1"], "seed"),
-    ],
+    [(["--rooms", "castle"], "known: office"), (["--layouts", "0"], "--layouts"), (["--seed", "-1"], "seed")],
 )
 def test_bad_requests_leave_nothing(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], words: list[str], complaint: str

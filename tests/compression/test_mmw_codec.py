@@ -183,13 +183,7 @@ def test_strange_cubes_use_their_bytes_and_are_read(kind: str, num_frames: int, 
     assert left_db < -10
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "two loops, 120 frames",
-        "one frame",
-    ],
-)
+@pytest.mark.parametrize("name", ["two loops, 120 frames", "one frame"])
 def test_cubes_of_any_shape_reach_their_quality(name: str, tmp_path: Path):
     cube = plain_cube(*SHAPES[name])
     (tmp_path / "a.mmw").write_bytes(compress_cube(cube, quality_db=20.0))

@@ -83,11 +83,7 @@ def test_a_radar_with_few_loops_works():
 
 
 @pytest.mark.parametrize(
-    ("change", "word"),
-    [
-        ({"max_points_per_frame": 0}, "at least 1, not 0"),
-        ({"false_alarm_rate": 2.0}, "between"),
-    ],
+    ("change", "word"), [({"max_points_per_frame": 0}, "at least 1, not 0"), ({"false_alarm_rate": 2.0}, "between")]
 )
 def test_bad_input_is_refused(change: dict, word: str):
     with pytest.raises(InputError, match=word):

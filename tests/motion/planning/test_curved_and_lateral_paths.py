@@ -34,8 +34,7 @@ def test_angles_are_kept_left_being_the_persons_own(text: str, angle: float):
 
 
 @pytest.mark.parametrize(
-    "text",
-    ["walks in an arc to the right and walks back", "walks in an arc to the left, turns around and walks back"],
+    "text", ["walks in an arc to the right and walks back", "walks in an arc to the left, turns around and walks back"]
 )
 def test_who_walks_back_after_a_bend_goes_straight_to_where_it_began(text: str):
     for seed in range(2):
