@@ -298,25 +298,6 @@ def test_live_runs_on_and_takes_sentences(page: Any):
     assert "s of radar in" in ask(page, "a person waves")
 
 
-@pytest.mark.slow  # test_live_runs_on_and_takes_sentences and tests/studio/test_live.py hold the parts
-def test_twenty_seconds_live(page: Any, address: Running):
-    """Without jumps, in memory that does not grow; how fast: `make bench` (benchmarks/studio.py)."""
-    ask(page, "a person walks to the left")
-    page.get_by_role("button", name="Live").click()
-    heap, resident = [], []
-    for seconds, text in ((8, "a person claps"), (14, "a person walks to the right"), (20, "a person sits down")):
-        page.wait_for_function(f"() => studio.live && studio.live.frames > {10 * seconds}", timeout=120_000)
-        page.evaluate("window.gc && gc()")
-        heap.append(page.evaluate("performance.memory.usedJSHeapSize") / 1e6)
-        resident.append(address.memory_mb)
-        page.locator(".sentence").first.fill(text)
-        page.locator(".sentence").first.press("Enter")
-    page.wait_for_function("() => studio.live.frames > 220", timeout=120_000)
-    page.get_by_role("button", name="Stop").click()
-    assert heap[-1] - heap[0] < 30, heap
-    assert resident[-1] - resident[0] < 60, resident
-
-
 def test_a_room_without_a_floor_offers_recovery_options(page: Any, tmp_path: Path):
     """A wall at 0.45 m fills the picture: nobody can stand before it."""
     Image.fromarray(np.full((480, 640, 3), 180, np.uint8)).save(tmp_path / "rgb.png")

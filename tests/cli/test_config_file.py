@@ -41,16 +41,6 @@ def test_a_run_is_repeated_by_its_request(tmp_path: Path, monkeypatch: pytest.Mo
     assert Path("cube/radar.npz").read_bytes() == Path("same/radar.npz").read_bytes()
 
 
-def test_a_sequence_of_a_batch_is_repeated_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.chdir(tmp_path)
-    Path("texts.txt").write_text("a person stands\na person waves\n")
-    argv = ["generate", "--demo", "--frames", "3", "--no-pictures", "--quiet"]
-    assert main([*argv, "--texts", "texts.txt", "--seed", "3", "--out", "set"]) == 0
-    assert main(["generate", "--config", "set/0001/request.toml", "--quiet", "--out", "alone"]) == 0
-    for name in REPEATED:
-        assert Path("set/0001", name).read_bytes() == Path("alone", name).read_bytes(), name
-
-
 def test_every_kind_of_value_comes_back(tmp_path: Path):
     argv = [
         "generate",
@@ -227,10 +217,3 @@ def test_a_bad_file_is_one_line(content: str | None, says: str, tmp_path: Path, 
     assert says in error
     assert error.count("\n") == 1
     assert not (tmp_path / "out").exists()
-
-
-def test_floats_keep_every_bit(tmp_path: Path):
-    fps = float(np.nextafter(0.1, 1)) * 100
-    file = tmp_path / "request.toml"
-    file.write_text(request_toml(options("generate", "--demo", "--fps", repr(fps))))
-    assert options("generate", "--config", str(file)).fps == fps

@@ -101,23 +101,3 @@ def test_bad_input_is_one_line_and_leaves_nothing(
     assert error.count("\n") == 1
     assert message in error
     assert not (tmp_path / "out").exists()
-
-
-def test_a_motion_model_acts_out_the_text(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    pytest.importorskip("transformers")
-    assert (
-        main(
-            [
-                "generate",
-                "--demo",
-                "--motion-model",
-                str(tmp_path / "none.tar"),
-                "--motion-set",
-                "for=all",
-                "--out",
-                str(tmp_path / "o"),
-            ]
-        )
-        == 2
-    )
-    assert "there is no checkpoint" in capsys.readouterr().err

@@ -13,7 +13,7 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube
 from mmweaver.core.seeding import stream
 from mmweaver.io.dca1000 import write_bin
-from mmweaver.io.npz_files import read_npz, read_points_npz, read_radar_npz
+from mmweaver.io.npz_files import read_points_npz, read_radar_npz
 from tests.captures import counts, radar_of_cfg, write_radar
 
 BARE_CFG = """channelCfg 15 7 0
@@ -85,24 +85,6 @@ def test_both_iq_orders_and_npy_give_the_same_cube(recording: Path, tmp_path: Pa
         cubes.append(values / np.abs(values).max())
     assert np.array_equal(cubes[0], cubes[1])
     assert np.allclose(cubes[0], cubes[2], atol=1e-3)
-
-
-def test_points_as_a_board_reports_them(recording: Path, tmp_path: Path):
-    out = tmp_path / "capture"
-    argv = ["process", str(recording / "adc_data.bin"), "--radar", "awr1843", "--points", "firmware"]
-    assert main([*argv, "--out", str(out), "--quiet"]) == 0
-    points = read_npz(out / "points.npz")
-    best = points["intensity"].argmax()
-    assert (points["x_m"][best], points["y_m"][best]) == pytest.approx((0, 2), abs=0.05)
-    assert (points["radial_velocity_mps"] == 0).any()
-    assert json.loads((out / "meta.json").read_text())["firmware"]["device"] == "xwr14xx"
-
-
-def test_the_summary_for_machines(recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    argv = ["process", str(recording / "adc_data.bin"), "--radar", "awr1843", "--out", str(tmp_path / "x"), "--json"]
-    assert main(argv) == 0
-    summary = json.loads(capsys.readouterr().out)
-    assert all(Path(path).is_file() for path in summary["files"].values())
 
 
 def test_a_capture_folder_needs_no_option(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

@@ -143,25 +143,6 @@ def test_a_set_begun_and_killed_at_once_is_resumed(folder: Path, tmp_path: Path)
         assert contents(part) == contents(tmp_path / "begun")
 
 
-@pytest.mark.slow  # one that finds a room written in the meantime: test_a_room_written_in_the_meantime_is_kept
-def test_several_that_start_at_once_make_one_set(folder: Path, tmp_path: Path):
-    code = (
-        "import sys; from pathlib import Path; from mmweaver.datasets.dataset_plan import DatasetPlan;"
-        "from mmweaver.core.presets import AWR1843; from mmweaver.datasets.dataset_writer import open_dataset;"
-        "sys.stdin.read();"
-        "open_dataset(Path(sys.argv[1]), DatasetPlan(kinds=('office',), lightings=('day',), num_layouts=2,"
-        " sequences_a_room=2, num_frames=2), AWR1843)"
-    )
-    words = [sys.executable, "-c", code, str(tmp_path / "set")]
-    several = [subprocess.Popen(words, stdin=subprocess.PIPE) for _ in range(3)]
-    for one in several:
-        assert one.stdin is not None
-        one.stdin.close()
-    assert [one.wait() for one in several] == [0, 0, 0]
-    open_dataset(tmp_path / "begun", PLAN, AWR1843)
-    assert contents(tmp_path / "set") == contents(tmp_path / "begun")
-
-
 def test_another_radar_of_the_same_name_is_refused(folder: Path):
     with pytest.raises(InputError, match="another radar"):
         open_dataset(folder, PLAN, replace(AWR1843, tx_power_dbm=3.0))

@@ -40,12 +40,6 @@ def environment(**more: str) -> dict[str, str]:
     return os.environ | {"PYTHONPATH": os.pathsep.join(roots), "OMP_NUM_THREADS": "1"} | more
 
 
-def launched(*words: str) -> subprocess.CompletedProcess[str]:
-    """Two processes, started and ended by torch's launcher."""
-    command = [sys.executable, "-m", "torch.distributed.run", "--standalone", "--nproc-per-node", "2", str(SCRIPT)]
-    return subprocess.run([*command, *words], env=environment(), capture_output=True, text=True, timeout=120)
-
-
 def two_processes_equal_one(two: Path, one: Path) -> None:
     trainer(one).run()
     both = weights(two)
@@ -72,17 +66,6 @@ def test_two_processes_equal_one_with_the_same_batch(tmp_path: Path):
     ]
     errors = [process.communicate(timeout=120)[1] for process in started]
     assert [process.returncode for process in started] == [0, 0], errors
-    two_processes_equal_one(tmp_path / "two", tmp_path / "one")
-
-
-@pytest.mark.slow  # test_resuming.py has a run that goes on where it stopped
-def test_two_processes_equal_one_even_after_a_kill(tmp_path: Path):
-    pytest.importorskip("accelerate")
-    killed = launched(str(tmp_path / "two"), "5")
-    assert killed.returncode != 0
-    assert torch.load(tmp_path / "two" / "checkpoint.pt", weights_only=True)["done"] == 4
-    done = launched(str(tmp_path / "two"))
-    assert done.returncode == 0, done.stderr[-2000:]
     two_processes_equal_one(tmp_path / "two", tmp_path / "one")
 
 
