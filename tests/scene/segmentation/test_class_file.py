@@ -55,12 +55,3 @@ def test_bad_tables(path: Path, table: str, message: str):
     path.with_suffix(".json").write_text(table)
     with pytest.raises(InputError, match=message):
         read_class_file(path, 64, 48)
-
-
-def test_other_pictures_are_refused(path: Path):
-    Image.fromarray(np.zeros((48, 64, 3), np.uint8)).save(path)
-    with pytest.raises(InputError, match="mode RGB"):
-        read_class_file(path, 64, 48)
-    Image.fromarray(np.full((48, 64), 200, np.uint8)).save(path)
-    with pytest.raises(InputError, match="class number 200"):
-        read_class_file(path, 64, 48)
