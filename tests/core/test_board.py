@@ -1,6 +1,5 @@
 """The board's record and file, and boards by name."""
 
-import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -96,9 +95,3 @@ def test_what_is_no_board_is_refused_in_one_line(text: str, why: str, tmp_path: 
     with pytest.raises(InputError, match=why) as caught:
         read_board(file)
     assert "\n" not in str(caught.value)
-
-
-def test_every_field_is_in_the_page_with_its_table():
-    page = (REPOSITORY / "docs" / "board.md").read_text(encoding="utf-8")
-    for name in json.loads(json.dumps(list(Board.__dataclass_fields__))):
-        assert f"| `{name}`" in page, f"docs/board.md has no row for {name}"

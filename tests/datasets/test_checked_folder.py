@@ -65,14 +65,6 @@ def test_no_damage_is_accepted(geometry_only: bool, request: pytest.FixtureReque
     assert outcomes == {"refused": 3}
 
 
-def test_a_set_without_one_of_its_rooms_is_refused(tiny_signals: Path, tmp_path: Path):
-    data = tmp_path / "set"
-    shutil.copytree(tiny_signals, data)
-    shutil.rmtree(data / "office_000")
-    with pytest.raises(InputError, match=r"office_000.*mmweaver dataset"):
-        read_rooms(data)
-
-
 def test_damage_after_the_room_was_opened_is_noticed(tiny_signals: Path, tmp_path: Path):
     """Training reads signals again and again, long after it has opened the set."""
     data = tmp_path / "set"

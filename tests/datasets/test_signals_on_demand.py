@@ -1,6 +1,5 @@
 """A set without stored signals makes the same ones when asked: in any order, in workers, by either method."""
 
-import json
 import pickle
 import shutil
 from dataclasses import replace
@@ -118,8 +117,3 @@ def test_moving_power_leaves_out_what_stands_still(both: tuple[ActivitySet, Acti
     assert moving_power_db(replace(cube, values=10 * cube.values)) == pytest.approx(
         moving_power_db(cube) + 20, abs=1e-3
     )
-
-
-def test_set_json_says_how_signals_are_kept(both: tuple[ActivitySet, ActivitySet]):
-    plan = json.loads((both[0].files.folder / "set.json").read_text())
-    assert plan["options"]["iq"] == "none"

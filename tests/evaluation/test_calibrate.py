@@ -17,9 +17,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.evaluation.antenna_fits import fit_channels
 from mmweaver.evaluation.calibrate import Calibration, calibrate
-from mmweaver.evaluation.receiver_fits import skirt_end
 from mmweaver.evaluation.signal_evidence import ComparedSignal, SignalEvidence
-from mmweaver.evaluation.time_fits import fit_drift
 from mmweaver.propagation.adc_synthesis import AdcSynthesis
 from mmweaver.propagation.board_correction import corrected
 from mmweaver.propagation.board_effects import BoardEffects
@@ -129,21 +127,6 @@ def test_stated_errors_of_antennas_hold_the_truth_as_often_as_they_say():
     assert np.mean(within_twice) > 0.9
 
 
-def test_a_short_recording_says_how_far_its_drift_holds():
-    true_ppm, held, said = 0.9, [], 0
-    for room in range(12):
-        found = fit_drift([evidence_of(cluttered_room(Board(drift_ppm=true_ppm), frames=12, room=room))])
-        if found.is_found:
-            said += 1
-            low_ppm, high_ppm = map(float, re.search(r"\(([\d.]+) to ([\d.]+)\)", found.text).groups())
-            assert low_ppm < found.fields["drift_ppm"] < high_ppm
-            held.append(low_ppm < true_ppm < high_ppm)
-        else:
-            held.append(true_ppm < float(re.search(r"([\d.]+) ppm over longer times", found.text)[1]))
-    assert said >= 6
-    assert 0.55 < np.mean(held) <= 1.0
-
-
 def test_it_says_what_it_could_not_see(found: Calibration, tmp_path: Path):
     text = found.text()
     assert text.index("not seen") < text.index("range bias: ")
@@ -186,16 +169,6 @@ def test_a_recording_is_corrected_by_the_board_that_it_was_calibrated_from(board
     assert amiss_db(mended, room) < amiss_db(raw, room) - 2
     before, after = (np.abs(values[:, near, loops]).max() for values in (raw, mended))
     assert after < 0.1 * before
-
-
-def test_where_a_skirt_ends():
-    range_m = np.arange(100) * 0.05
-    falling = 1e4 * 10 ** (-range_m * 8)
-    assert skirt_end(falling, 1.0, range_m)[1].endswith("noise of a cell")
-    wall = falling + 3e3 * np.exp(-(((range_m - 0.6) / 0.05) ** 2))
-    end, how = skirt_end(wall, 1.0, range_m)
-    assert range_m[end] < 0.6
-    assert "echo at" in how
 
 
 def test_what_cannot_be_calibrated_is_refused():

@@ -11,7 +11,7 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.transmit_code import weights_of
-from mmweaver.io.mmwave_studio import is_mmwave_studio, read_mmwave_studio
+from mmweaver.io.mmwave_studio import read_mmwave_studio
 from mmweaver.io.radar_options import RadarOptions
 
 
@@ -135,17 +135,3 @@ def test_files_of_other_writers(tmp_path: Path):
     setup["rlChanCfg_t"]["cascading"] = 1
     with pytest.raises(InputError, match="cascade"):
         read_mmwave_studio(written(tmp_path, setup))
-
-
-@pytest.mark.parametrize("text", ["", "[]", "{}", '{"mmWaveDevices": []}', '{"mmWaveDevices": [3]}', "\xff"])
-def test_another_file_is_refused(tmp_path: Path, text: str):
-    path = tmp_path / "other.json"
-    path.write_text(text, encoding="latin-1")
-    with pytest.raises(InputError, match=r"other\.json"):
-        read_mmwave_studio(path)
-
-
-def test_recognition_of_the_format():
-    assert is_mmwave_studio({"mmWaveDevices": []})
-    assert not is_mmwave_studio([])
-    assert not is_mmwave_studio({"name": "awr1843"})

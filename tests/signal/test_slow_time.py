@@ -11,7 +11,7 @@ from mmweaver.core.records import AdcCube, RadarCube
 from mmweaver.propagation.reference_sum import exact_frame
 from mmweaver.signal.cube import radar_cube, remove_static
 from mmweaver.signal.points import point_cloud
-from mmweaver.signal.slow_time import circle_centre, moving_cells, slow_time_doppler
+from mmweaver.signal.slow_time import moving_cells, slow_time_doppler
 from mmweaver.signal.spectra import range_doppler_power
 from mmweaver.signal.vital_signs import breathing_rate, heart_rate
 
@@ -113,14 +113,3 @@ def test_a_rate_in_noise_is_not_clear():
     hearts = [heart_rate(1e-3 * rng.standard_normal(600), 0.05) for _ in range(100)]
     assert sum(rate.is_clear for rate in found) < 50
     assert sum(rate.is_clear for rate in hearts) < 10
-
-
-def test_nothing_is_invented():
-    rng = np.random.default_rng(2)
-    noise = np.cumsum(rng.standard_normal(400)) * 1e-6
-    assert not breathing_rate(noise, 0.05).is_clear  # too small
-    assert breathing_rate(noise[:10], 0.05) is None
-    assert heart_rate(noise, 0.5) is None  # two frames a second
-    assert circle_centre(np.linspace(0, 1, 50) + 0j) is None  # a line
-    cube = recorded(SLOW, lambda time_s: 1.4 + 0 * time_s, 4)
-    assert moving_cells(cube) == []

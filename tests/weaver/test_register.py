@@ -1,7 +1,6 @@
 """What others add works like what is built in: the page that says how is run, plug-ins are found, broken ones named."""
 
 import os
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -60,18 +59,6 @@ def mmweaver(env: dict[str, str], *argv: str) -> subprocess.CompletedProcess[str
     return subprocess.run(
         [sys.executable, "-m", "mmweaver", *argv], capture_output=True, text=True, check=False, env=env
     )
-
-
-@pytest.mark.slow
-def test_the_page_that_says_how(tmp_path: Path):
-    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "extend.md").read_text(), re.DOTALL)
-    assert len(blocks) >= 5
-    (tmp_path / "page.py").write_text("\n".join(blocks))
-    env = {**os.environ, "PYTHONPATH": str(ROOT / "src")}
-    done = subprocess.run(
-        [sys.executable, "page.py"], capture_output=True, text=True, check=False, env=env, cwd=tmp_path
-    )
-    assert done.returncode == 0, done.stderr
 
 
 def test_plug_ins_on_the_command_line(plugged: dict[str, str], tmp_path: Path):
