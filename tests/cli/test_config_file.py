@@ -43,17 +43,9 @@ def test_a_run_is_repeated_by_its_request(tmp_path: Path, monkeypatch: pytest.Mo
 
 def test_every_kind_of_value_comes_back(tmp_path: Path):
     argv = [
-        "generate",
-        "--rgb",
-        "/a/rgb.png",
-        "--text",
+        *["generate", "--rgb", "/a/rgb.png", "--text"],
         'a "b" \u00e9\n',
-        "--text",
-        "c",
-        "--at",
-        "-0.1,2",
-        "--at",
-        "1,1.5",
+        *["--text", "c", "--at", "-0.1,2", "--at", "1,1.5"],
     ]
     argv += ["--landmark", "door=0.9,2.8", "--fps", "12.5", "--bin", "--heading", "-20.25", "--iq-order", "qi"]
     argv += ["--path", "0,3 -0.5,1", "--radar-pose", "0.5,0,0.2,-30,10", "--mesh-set", "up=y", "--tx-order", "0,2,1"]

@@ -43,13 +43,7 @@ def test_the_cost_is_printed_beforehand(tmp_path: Path, capsys: pytest.CaptureFi
     words = [
         "dataset",
         str(tmp_path / "d"),
-        "--layouts",
-        "10",
-        "--sequences",
-        "120",
-        "--workers",
-        "4",
-        "--rooms",
+        *["--layouts", "10", "--sequences", "120", "--workers", "4", "--rooms"],
         REFERENCE,
     ]
     assert main([*words, "--dry-run"]) == 0

@@ -33,15 +33,9 @@ def recorded(tmp_path: Path) -> Path:
 def test_a_recorded_motion_in_the_sample_room(recorded: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     out = tmp_path / "out"
     argv = [
-        "generate",
-        "--demo",
-        "--motion",
+        *["generate", "--demo", "--motion"],
         str(recorded),
-        "--motion-set",
-        "fps=30",
-        "--frames",
-        "5",
-        "--out",
+        *["--motion-set", "fps=30", "--frames", "5", "--out"],
         str(out),
     ]
     argv += ["--at", "0.1,1.7", "--heading", "-20", "--height", "1.85", "--no-pictures"]

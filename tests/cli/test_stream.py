@@ -17,16 +17,6 @@ def test_a_stream_has_as_many_frames_as_asked_for(frames: int, tmp_path: Path):
     assert len(read_recording(out).cube.values) == frames
 
 
-@pytest.mark.parametrize(
-    ("given", "named"), [([], "--text"), (["--text", "a person waves", "--seconds", "3"], "--seconds")]
-)
-def test_what_streams_do_not_have_is_refused(given: list[str], named: str, tmp_path: Path, capsys):
-    out = tmp_path / "live"
-    assert main(["generate", "--demo", "--stream", *given, "--out", str(out)]) == 2
-    assert named in capsys.readouterr().err
-    assert not out.exists()
-
-
 def test_a_stream_into_a_folder_that_holds_one_says_what_to_do(tmp_path: Path, capsys):
     (tmp_path / "parts.jsonl").write_text("", encoding="utf-8")
     assert main(["generate", "--demo", "--stream", "--text", "a person walks", "--out", str(tmp_path)]) == 2

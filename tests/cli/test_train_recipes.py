@@ -48,19 +48,6 @@ def test_a_set_of_ones_own_room_is_trained_on(
     assert "held out" in (tmp_path / "a" / "README.md").read_text()
 
 
-def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    data = ["--data", str(tmp_path), "--out", str(tmp_path / "o")]
-    for words, told in (
-        (["train", "activity", *data], "no data set"),
-        (["train", "activity", *data, "--weights", "w", "--recordings", "c"], "--recordings"),
-    ):
-        assert main(words) == 2
-        error = capsys.readouterr().err.strip()
-        assert told in error
-        assert error.count("\n") == 0
-    assert not (tmp_path / "o").exists()
-
-
 def two_processes(words: list[str]) -> list[subprocess.Popen[str]]:
     """What torchrun starts; each can be killed by itself."""
     with socket.socket() as free:

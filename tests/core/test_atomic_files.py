@@ -191,12 +191,3 @@ def test_what_another_host_writes_stays_for_an_hour_after_its_last_change(
     with atomic_file(tmp_path / "a.txt") as temporary:
         temporary.write_text("mine")
     assert other.exists() == is_kept
-
-
-def test_a_file_that_another_command_replaces_leaves_the_checksums(tmp_path: Path):
-    with staged_folder(tmp_path / "out") as stage:
-        (stage / "a.txt").write_text("a")
-        (stage / "b.txt").write_text("b")
-    with atomic_file(tmp_path / "out" / "a.txt") as temporary:
-        temporary.write_text("another")
-    assert set(read_sums(tmp_path / "out") or {}) == {"b.txt"}

@@ -7,11 +7,9 @@ from mmweaver.core.errors import InputError
 from mmweaver.datasets.paired_sampling import (
     MAX_ATTEMPTS,
     MAX_OWN_ATTEMPTS,
-    PlannedSequence,
     StartPlace,
     paired_draws,
     places_of,
-    shuffled,
     unpaired_reasons,
 )
 from mmweaver.weaver.front_door import Weaver
@@ -67,26 +65,9 @@ def test_a_room_that_never_serves_is_refused():
     assert len(tried) == MAX_ATTEMPTS + MAX_OWN_ATTEMPTS
 
 
-def test_draws_start_on_the_free_floor():
-    free_m = np.array([[0.0, 2.0], [0.3, 2.1]])
-    here = StartPlace(centre_m=(0.0, 2.0), free_m=free_m, cell_m=0.05)
-    starts = np.array([each[0].start_m for each in paired_draws([[here]], 40, 1, 0, 1, serves_all)])
-    off_m = np.abs(starts[:, None] - free_m).max(axis=-1)
-    assert (off_m.min(axis=1) <= 0.0255).all()
-    assert set(off_m.argmin(axis=1)) == {0, 1}
-
-
 def test_places_are_far_apart_and_free():
     scene = Weaver().sample_room().scene
     places = np.array([one.centre_m for one in places_of(scene, (0.7, 3.4), 5, 0)])
     assert len(places) == 5
     gaps = np.linalg.norm(places[:, None] - places[None], axis=-1)[np.triu_indices(5, 1)]
     assert gaps.min() > 0.3
-
-
-def test_the_order_is_shuffled():
-    draw = next(paired_draws(PLACES, 1, 1, 0, 1, serves_all))[0]
-    sequences = [PlannedSequence(draw=draw, label=n % 3, sentence=0, text="") for n in range(60)]
-    order = [one.label for one in shuffled(sequences, 0)]
-    assert order != [one.label for one in sequences]
-    assert sorted(order) == sorted(one.label for one in sequences)

@@ -54,14 +54,6 @@ def test_files_and_folders_of_every_kind(tmp_path: Path):
     assert len(signals_of([CUBE, ADC, str(result)], RawReading(), "A")) == 3
 
 
-def test_a_cube_without_its_radar_is_read_by_the_one_that_is_given(tmp_path: Path):
-    write_radar_npz(tmp_path / "cube.npz", CUBE)
-    (found,) = signals_of(tmp_path / "cube.npz", RawReading(radar=CUBE.config, tx_order=(0, 2, 1)), "A")
-    assert found.cube.config == CUBE.config
-    with pytest.raises(InputError, match="give the radar"):
-        signals_of(tmp_path / "cube.npz", RawReading(), "A")
-
-
 def test_samples_of_a_result_are_in_the_scale_of_its_cube(tmp_path: Path):
     folder = write_result(tmp_path / "made")
     _, counts = write_bin(folder / "adc_data.bin", ADC, counts_per_unit=2000.0), 2000.0

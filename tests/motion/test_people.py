@@ -103,12 +103,3 @@ def test_ages_and_statures_show_and_are_said(words: str, low_m: float, high_m: f
     made = act_out(f"{words} waves", seed=3)
     assert made.clauses[0].status == "done"
     assert any("is taken as" in note for note in made.assumptions)
-
-
-@pytest.mark.parametrize("text", ["waves three times", "claps", "does three squats", "nods twice"])
-def test_the_pace_of_who_is_described_holds_on_the_spot(text: str):
-    child, man, old = (act_out(f"{who} {text}", seed=3).plan for who in ("a child", "a man", "an old man"))
-    assert child.duration_s < man.duration_s < old.duration_s or man.duration_s == 2.0
-    paces = [plan.steps[0].pace for plan in (child, man, old)]
-    assert paces[0] / paces[1] == pytest.approx(1.15)
-    assert paces[2] / paces[1] == pytest.approx(0.75)

@@ -8,7 +8,6 @@ from mmweaver.core.skeleton import joint
 from mmweaver.recognition.subject_simulation import (
     Performance,
     PerformancePrior,
-    lingering,
     perform,
     performer,
     spread_feet,
@@ -95,19 +94,3 @@ def test_the_body_is_over_the_foot_that_stands():
     standing = wider[:, joint("right_ankle"), 0] - wider[:, joint("pelvis"), 0]
     np.testing.assert_allclose(standing - both[:, joint("right_ankle"), 0], (-0.1, 0.0), atol=1e-9)
     np.testing.assert_allclose(wider[:, joint("right_ankle")], wider[:1, joint("right_ankle")].repeat(2, 0))
-
-
-def test_who_lingers_stays_longer_where_the_movement_begins():
-    time_s = np.arange(0.0, 12.0, 0.05)
-    joints_m = np.repeat(drawn_stance(0.2), len(time_s), axis=0)
-    high = 0.5 - 0.5 * np.cos(2 * np.pi * time_s / 3)
-    joints_m[:, joint("left_wrist"), 2] += 1.5 * high
-    low_s = [
-        np.gradient(lingering(time_s, joints_m, linger))[high < 0.3].sum() for linger in (0.0, 3.0)
-    ]  # the time spent low
-    assert low_s[1] > 1.3 * low_s[0]
-    warped_s = lingering(time_s, joints_m, 3.0)
-    assert (np.diff(warped_s) > 0).all()
-    np.testing.assert_allclose(warped_s[[0, -1]], time_s[[0, -1]])
-    still = np.repeat(drawn_stance(0.2), len(time_s), axis=0)
-    np.testing.assert_array_equal(lingering(time_s, still, 3.0), time_s)

@@ -153,18 +153,6 @@ def live_labels(model: Recogniser, recording: PointRecording) -> list[Recognitio
     return [one for points in frames(recording) for one in live.push(points)] + live.finish()
 
 
-@pytest.mark.parametrize("gap_frames", [None, 3])
-def test_live_labels_are_those_of_the_recording(gap_frames: int | None, task_file: Path):
-    model = small_recogniser(task_file)
-    model = replace(model, settings=replace(model.settings, gap_frames=gap_frames))
-    recording = drawn_sequences(model.settings, 1, first=9)[1].part(0, 71)
-    kept = ~np.isin(recording.cloud.frame, [0, 1, 30, 31, 32, 33, 34, 60])  # gaps, and a sample shorter than a window
-    recording = replace(recording, cloud=recording.cloud.select(kept))
-    found = live_labels(model, recording)
-    assert found == model.recognise(recording)
-    assert len(found) >= 2
-
-
 @pytest.mark.usefixtures("drawn")
 @pytest.mark.parametrize("gap_frames", [4, 30])
 def test_gaps_are_windows_of_an_empty_place_where_a_label_is_one(gap_frames: int, task_file: Path):

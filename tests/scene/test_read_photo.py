@@ -139,19 +139,6 @@ def test_what_cannot_be_depth_is_refused(files: Files, values: np.ndarray, messa
     assert message in files.error()
 
 
-@pytest.mark.parametrize("which", ["rgb", "depth", "camera"])
-def test_missing_folder_and_rubbish(files: Files, which: str):
-    path: Path = getattr(files, which)
-    whole = path.read_bytes()
-    for content in (b"no picture, no json", whole[: len(whole) * 2 // 3]):
-        path.write_bytes(content)
-        assert path.name in files.error()
-    path.unlink()
-    assert "does not exist" in files.error()
-    path.mkdir()
-    assert "is a folder" in files.error()
-
-
 @pytest.mark.parametrize(
     ("change", "message"),
     [

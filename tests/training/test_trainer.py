@@ -89,29 +89,6 @@ def test_non_finite_steps_are_skipped_and_many_end_the_run(tmp_path: Path):
         trainer(tmp_path / "all", replace(RECIPE, steps=100), train=bad(2, 100)).run()
 
 
-def test_rows_of_lost_steps_are_dropped(tmp_path: Path):
-    recipe = replace(RECIPE, validate_every=1)
-    trainer(tmp_path, recipe).run()
-    lines = (tmp_path / "log.jsonl").read_text().splitlines()
-    state = torch.load(tmp_path / "checkpoint.pt", weights_only=True)
-    torch.save(state | {"done": 5}, tmp_path / "checkpoint.pt")
-    with (tmp_path / "log.jsonl").open("a") as log:
-        log.write('{"step": 9, "los')  # a process was killed here
-    trainer(tmp_path, recipe)
-    assert (tmp_path / "log.jsonl").read_text().splitlines() == lines[:5]
-
-
-def test_tensorboard_holds_figures_and_pictures(tmp_path: Path):
-    pytest.importorskip("tensorboard")
-    from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
-
-    trainer(tmp_path, tensorboard=True).run()
-    events = EventAccumulator(str(tmp_path / "tensorboard"))
-    events.Reload()
-    assert {"loss", "terms/square", "validation", "learning_rate"} <= set(events.Tags()["scalars"])
-    assert [image.step for image in events.Images("validation")] == [4, 8]
-
-
 def test_unavailable_devices_and_precisions_are_refused():
     for words, says in ((("nonsense", "auto"), "device"), (("cpu", "int4"), "precision")):
         with pytest.raises(InputError, match=says):
