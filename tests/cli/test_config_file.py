@@ -173,7 +173,7 @@ def test_old_options_of_other_commands(command: str, line: str, name: str | None
         )
 
 
-@pytest.mark.parametrize("method", ["physics", "weaver"])
+@pytest.mark.parametrize("method", ["weaver"])
 def test_paths_that_a_file_leaves_out_are_left_out(method: str, tmp_path: Path):
     file = tmp_path / "run.toml"
     file.write_text(

@@ -143,8 +143,10 @@ def test_points_as_a_board_reports_them(tmp_path: Path):
     assert meta["firmware"]["range_cfar"]["threshold"] == 1280
 
 
-def bad_pictures(folder: Path, good: Path) -> None:
-    """Everything that can be wrong with a depth picture, beside good ones."""
+@pytest.fixture(scope="module")
+def bad_pictures(pictures: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Everything that can be wrong with a depth picture, next to good ones; nothing is written there."""
+    good, folder = pictures, tmp_path_factory.mktemp("bad")
     for name in ("rgb.png", "depth.png", "camera.json"):
         (folder / name).write_bytes((good / name).read_bytes())
     depth = np.asarray(Image.open(good / "depth.png"))
@@ -164,6 +166,7 @@ def bad_pictures(folder: Path, good: Path) -> None:
     (folder / "full").mkdir()
     (folder / "full" / "mine.txt").write_text("mine")
     (folder / "file").write_text("a file")
+    return folder
 
 
 PICTURES = ["--rgb", "rgb.png", "--depth", "depth.png", "--camera", "camera.json"]
@@ -213,12 +216,11 @@ PICTURES = ["--rgb", "rgb.png", "--depth", "depth.png", "--camera", "camera.json
     ids=lambda value: " ".join(value)[:60] if isinstance(value, list) else None,
 )
 def test_bad_input_is_one_line_and_writes_nothing(
-    words: list[str], says: str, pictures: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    words: list[str], says: str, bad_pictures: Path, monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ):  # fmt: skip
-    bad_pictures(tmp_path, pictures)
-    before = sorted(str(file) for file in tmp_path.rglob("*"))
-    monkeypatch.chdir(tmp_path)
+    before = sorted(str(file) for file in bad_pictures.rglob("*"))
+    monkeypatch.chdir(bad_pictures)
     text = [] if "--text" in words else ["--text", WALK]
     out = [] if "--out" in words else ["--out", "walk"]
     assert main(["generate", *text, *out, *words]) == 2
@@ -228,7 +230,7 @@ def test_bad_input_is_one_line_and_writes_nothing(
     assert len(captured.err) < 500
     assert says in captured.err
     assert captured.out == ""
-    assert sorted(str(file) for file in tmp_path.rglob("*")) == before
+    assert sorted(str(file) for file in bad_pictures.rglob("*")) == before
 
 
 @pytest.mark.parametrize("words", [["--seconds", "0"], ["--fps", "0"], ["--text", "a person photosynthesises"]])

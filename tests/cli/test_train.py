@@ -17,10 +17,10 @@ pytest.importorskip("zarr")
 @pytest.mark.usefixtures("blank_training_pictures")
 def test_train_then_generate(tiny_signals: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     data, run, out = str(tiny_signals), tmp_path / "run", tmp_path / "generated"
-    assert main(["train", "weaver", "--data", data, "--out", str(run), "--steps", "2", "--batch", "1", "--json"]) == 0
+    assert main(["train", "weaver", "--data", data, "--out", str(run), "--steps", "1", "--batch", "1", "--json"]) == 0
     weights = json.loads(capsys.readouterr().out)["weights"]
     request = tomllib.loads((run / "request.toml").read_text())
-    assert request == {"command": "train", "recipe": "weaver", "data": data, "steps": 2, "batch": 1, "seed": 0}
+    assert request == {"command": "train", "recipe": "weaver", "data": data, "steps": 1, "batch": 1, "seed": 0}
     words = ["generate", "--demo", "--method", "weaver", "--weights", weights, "--frames", "2", "--out", str(out)]
     words += ["--text", "a person walks towards the radar"]
     assert main([*words, "--quiet", "--no-pictures"]) == 0

@@ -1,12 +1,7 @@
 """mmweaver train activity."""
 
 import json
-import os
-import socket
-import subprocess
-import sys
 from pathlib import Path
-from typing import Any
 
 import pytest
 import torch
@@ -46,24 +41,3 @@ def test_a_set_of_ones_own_room_is_trained_on(
     stored = read_activity_set(activity_set)
     assert network(*network.maps(torch.from_numpy(stored.cube(0).values)[None])).shape == (1, 3)
     assert "held out" in (tmp_path / "a" / "README.md").read_text()
-
-
-def two_processes(words: list[str]) -> list[subprocess.Popen[str]]:
-    """What torchrun starts; each can be killed by itself."""
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = str(free.getsockname()[1])
-    shared = {"WORLD_SIZE": "2", "MASTER_ADDR": "127.0.0.1", "MASTER_PORT": port, "OMP_NUM_THREADS": "1"}
-    shared["PYTHONPATH"] = str(Path(__file__).parents[2] / "src")
-    command = [sys.executable, "-m", "mmweaver", *words]
-    environments = (os.environ | shared | {"RANK": rank, "LOCAL_RANK": rank} for rank in "01")
-    pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    return [subprocess.Popen(command, env=environment, **pipes) for environment in environments]
-
-
-def finished(words: list[str]) -> dict:
-    """What the one process that speaks told."""
-    ends = [process.communicate(timeout=300) for process in two_processes(words)]
-    assert ends[1][0] == "", ends[1]
-    assert ends[0][0], ends[0][1][-2000:]
-    return json.loads(ends[0][0])
