@@ -7,7 +7,8 @@ from tests.advice.harness import Row, add, drop, flag, instead
 SHORT = "--frames 1 --no-pictures --out out"
 DEMO = f"generate --demo {SHORT}"
 PHOTO = "--rgb {rgb} --depth {depth} --camera {camera}"
-OWN = f"generate {PHOTO} --text 'a person waves' {SHORT}"
+
+
 BATCH = f"generate --demo --texts {{texts}} {SHORT}"
 STREAM = f"generate --demo --stream --text 'a person waves' {SHORT}"
 

@@ -1,6 +1,7 @@
 """Options from a TOML file, and the request.toml by which a run is repeated bit for bit."""
 
 import math
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -81,42 +82,7 @@ def test_a_file_of_0_2_is_read_and_its_old_names_are_warned_of_once(tmp_path: Pa
     assert any("--further-photos" in line and "--extra-views" in line for line in warned)
 
 
-# every option of 0.2 that generate has no longer, as its request.toml named it -> a field of today's, and its value
-OLD_OPTIONS = {
-    'empty-room = "empty"': ("background", "{0}/empty"),
-    'depth-model = "auto"': ("depth", "auto"),
-    'segmenter = "builtin"': ("classes", "builtin"),
-    'capture = "scan"': ("room", "{0}/scan"),
-    'further-photos = "60,120"': ("extra_views", "60,120"),
-    'views = "views.json"': ("room", "{0}/views.json"),
-    'mesh = "room.glb"': ("room", "{0}/room.glb"),
-    "mesh-eye = [0.5, 1.0, 1.2]": ("mesh_set", ["eye=0.5,1.0,1.2"]),
-    "mesh-look = 90.0": ("mesh_set", ["look=90.0"]),
-    'mesh-unit = "cm"': ("mesh_set", ["unit=cm"]),
-    'mesh-up = "z"': ("mesh_set", ["up=z"]),
-    'mesh-materials = "names.json"': ("mesh_set", ["materials={0}/names.json"]),
-    "repeat = 3": ("per_class", 3),
-    "repeat = 1": ("per_class", None),
-    'draws = "matched"': (None, None),
-    'draws = "free"': (None, None),
-    "store = false": (None, None),
-    'motion-model-for = "all"': ("motion_set", ["for=all"]),
-    'motion-model-for = "unknown"': ("motion_set", None),
-    "motion-fps = 30.0": ("motion_set", ["fps=30.0"]),
-    'motion-unit = "cm"': ("motion_set", ["unit=cm"]),
-    'motion-up = "z"': ("motion_set", ["up=z"]),
-    "motion-start = 1.5": ("motion_set", ["start=1.5"]),
-    'clip = "walk"': ("motion_set", ["clip=walk"]),
-    'body-model = "names.json"': ("motion_set", ["body={0}/names.json"]),
-    "subframe = 1": ("radar_set", ["subframe=1"]),
-    'antennas = "isk"': ("radar_set", ["antennas=isk"]),
-    "lanes = 2": ("radar_set", ["lanes=2"]),
-    "bounces = 2": ("method_set", ["bounces=2"]),
-    'clutter = "all"': ("method_set", ["clutter=all"]),
-    'html = "walk.html"': (None, None),
-    "strict = true": (None, None),
-    'log-level = "info"': (None, None),
-}
+OLD_OPTIONS = tomllib.loads(Path(__file__).with_name("old_options.toml").read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize("line", OLD_OPTIONS)
@@ -127,7 +93,7 @@ def test_an_old_option_of_a_file_is_read_and_warned_of_once(
     (tmp_path / "run.toml").write_text(f'command = "generate"\ndemo = true\nradar = "awr1843"\n{line}\nseed = 4\n')
     found = options("generate", "--config", str(tmp_path / "run.toml"))
     assert (found.demo, found.radar, found.seed) == (True, "awr1843", 4)
-    name, value = OLD_OPTIONS[line]
+    name, value = OLD_OPTIONS[line].get("field"), OLD_OPTIONS[line].get("value")
     if name is not None:
         value = [str(one).format(tmp_path) for one in value] if isinstance(value, list) else value
         value = value.format(tmp_path) if isinstance(value, str) else value

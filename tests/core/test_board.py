@@ -11,8 +11,6 @@ from mmweaver.core.boards import IDEAL_BOARD, compensated, find_board, typical_b
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843, BGT60
 
-REPOSITORY = Path(__file__).parents[2]
-
 
 def test_a_board_comes_back_from_its_file(tmp_path: Path):
     board = replace(typical_board(AWR1843, 3), coupling_real=np.eye(12), coupling_imag=0.01 * np.ones((12, 12)))

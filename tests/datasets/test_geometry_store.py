@@ -23,10 +23,6 @@ def folders(tiny_geometry: Path, tiny_signals: Path) -> dict[bool, Path]:
     return {True: tiny_geometry, False: tiny_signals}
 
 
-def _size(folder: Path) -> int:
-    return sum(file.stat().st_size for file in folder.rglob("*") if file.is_file())
-
-
 def _error(got: np.ndarray, wanted: np.ndarray) -> float:
     return float((np.abs(got - wanted) ** 2).sum() / (np.abs(wanted) ** 2).sum())
 

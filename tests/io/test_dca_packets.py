@@ -1,6 +1,5 @@
 """Packets lost, late, repeated, truncated: zeros where nothing was received, the same bits everywhere else."""
 
-import struct
 from pathlib import Path
 
 import numpy as np
@@ -46,12 +45,6 @@ def test_a_stretch_of_frames_is_that_of_the_whole(tmp_path: Path, sent):
         assert np.array_equal(part.adc.samples, whole.adc.samples[frames])
         assert np.array_equal(part.frame_time_s, whole.frame_time_s[frames])
         assert (part.report, part.num_frames) == (whole.report, 3)
-
-
-def _renumbered(payload: bytes, number: int, first: int) -> bytes:
-    own, low, high = struct.unpack_from("<IIH", payload)
-    first += high << 32 | low
-    return struct.pack("<IIH", own + number, first & 0xFFFFFFFF, first >> 32) + payload[10:]
 
 
 def test_late_and_repeated_packets_change_nothing(tmp_path: Path, sent):

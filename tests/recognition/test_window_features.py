@@ -55,15 +55,3 @@ def test_an_empty_window_has_the_same_features_without_values():
     assert matrix[0, names.index("rate")] == 0
     assert np.isnan(matrix[0, names.index("momentum_top_hz")])
     assert np.isfinite(matrix[1]).sum() > 90
-
-
-def resting(range_m: np.ndarray, shown: np.ndarray, wall_m: float | None = None) -> PointRecording:
-    """A static spot at `range_m` in the frames `shown`, and optionally a permanent wall."""
-    frame, distance_m = np.flatnonzero(shown), range_m[shown]
-    if wall_m is not None:
-        frame = np.concatenate([frame, np.arange(FRAMES)])
-        distance_m = np.concatenate([distance_m, np.full(FRAMES, wall_m)])
-    return recording_of(frame, y_m=distance_m, num_frames=FRAMES, rate_hz=RATE_HZ)
-
-
-TIME_S = np.arange(FRAMES) / RATE_HZ
