@@ -69,6 +69,15 @@ def test_a_point_is_rendered_for_another_radar():
     assert error_db(ours, truth) < -20
 
 
+def test_static_clutter_is_rendered_for_another_radar():
+    cube = one_point(velocity_mps=0.0, num_frames=2)
+    field = ScattererField.fit(cube, FitRecipe(num_points=0, stages=1))
+    assert int(field.layers.counts().sum()) == 0
+    other = replace(SMALL, num_loops=8)
+    truth = exact_point(other, 1.4, 0.0, direction_of(0.2, 0.1))
+    assert error_db(field.for_radar(other, num_frames=1).values[0], truth) < -20
+
+
 def test_overlapping_windows_at_any_instant():
     """Fitted once for all chirps; a window between two windows is rendered from the same scatterers."""
     long = replace(SMALL, num_loops=64)

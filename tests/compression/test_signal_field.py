@@ -30,10 +30,31 @@ def test_finer_grids_contain_the_native_cells(factor: float):
     assert np.allclose(finer.antenna_position_m[::step], NATIVE.antenna_position_m, atol=1e-12)
 
 
+def test_one_and_a_half_times_finer_contains_every_other_cell():
+    finer = finer_grid(NATIVE, n_r=1.5, n_d=1.5)
+    assert finer.shape == (3, 96, 48, 12)
+    assert np.allclose(finer.range_m[::3], NATIVE.range_m[::2])
+    assert finer.radial_velocity_mps[48 // 2] == pytest.approx(0, abs=1e-12)
+
+
+def test_coordinates_are_in_cells():
+    frame, range_bin, doppler_bin, antenna = coordinates_on(NATIVE, finer_grid(NATIVE, n_r=2.0, n_d=4.0, n_a=2.0))
+    assert np.allclose(frame, [0, 1, 2])
+    assert np.allclose(range_bin, np.arange(128) / 2, atol=1e-9)
+    assert np.allclose(doppler_bin, np.arange(128) / 4, atol=1e-9)
+    assert np.allclose(antenna, np.arange(23) / 2, atol=1e-6)
+
+
 def test_antenna_places_and_numbers_are_inverse():
     number = np.array([0.0, 0.25, 3.0, 7.9, 11.0])
     place = antenna_at(NATIVE.antenna_position_m, number)
     assert np.allclose(antenna_coordinate(NATIVE.antenna_position_m, place, NATIVE.wavelength_m), number, atol=1e-6)
+
+
+def test_one_antenna_is_enough():
+    single = NATIVE.antenna_position_m[:1]
+    assert antenna_at(single, np.zeros(2)).shape == (2, 3)
+    assert antenna_coordinate(single, single, NATIVE.wavelength_m).tolist() == [0.0]
 
 
 def test_sampled_coordinates_stay_within_the_radius():

@@ -42,6 +42,15 @@ def test_sizes_follow_the_height():
     assert set(widths_per_depth()) == {1.0, 1.25}
 
 
+def test_left_and_right_mirror_each_other():
+    by_ends = {(capsule.start, capsule.end): capsule for capsule in CAPSULES}
+    for (start, end), right in by_ends.items():
+        if "right_" in start + end:
+            left = by_ends[start.replace("right_", "left_"), end.replace("right_", "left_")]
+            assert (left.start_radius_m, left.end_radius_m) == (right.start_radius_m, right.end_radius_m)
+            assert left.rest == (-right.rest[0], *right.rest[1:])
+
+
 @pytest.mark.parametrize("bone", BONES, ids=lambda bone: JOINT_NAMES[bone[1]])
 def test_the_planner_keeps_people_apart_by_at_least_the_radars_body(bone: tuple[int, int]):
     """Spheres of `separation` and cylinders of `body_samples` are no thinner than the capsules' thinner end."""

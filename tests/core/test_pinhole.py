@@ -7,6 +7,8 @@ from mmweaver.core.pinhole import (
     binned,
     project,
     resized,
+    rotated_clockwise,
+    subsampled,
     unproject,
     viewing_rays,
 )
@@ -38,7 +40,21 @@ def test_points_behind_have_no_pixel_and_holes_stay_holes():
     assert np.isnan(unproject(holes, CAMERA)).all()
 
 
+def test_subsampling_keeps_the_rays_of_the_pixels_that_stay():
+    small = subsampled(CAMERA, 3)
+    assert (small.width, small.height) == (22, 16)
+    np.testing.assert_allclose(viewing_rays(small), viewing_rays(CAMERA)[::3, ::3], atol=1e-12)
+
+
 @pytest.mark.parametrize("small", [binned(CAMERA, 4), resized(CAMERA, 16, 12)])
 def test_binning_and_resizing_average_the_rays_of_a_block(small: CameraIntrinsics):
     blocks = viewing_rays(CAMERA).reshape(12, 4, 16, 4, 3).mean(axis=(1, 3))
     np.testing.assert_allclose(viewing_rays(small), blocks, atol=1e-12)
+
+
+def test_rotating_the_picture_rotates_its_rays():
+    """Clockwise: the left edge becomes the top edge."""
+    rays = np.rot90(viewing_rays(CAMERA), -1)
+    rotated = viewing_rays(rotated_clockwise(CAMERA))
+    np.testing.assert_allclose(rotated[..., 0], -rays[..., 1], atol=1e-12)
+    np.testing.assert_allclose(rotated[..., 1], rays[..., 0], atol=1e-12)

@@ -65,6 +65,15 @@ def test_a_room_that_never_serves_is_refused():
     assert len(tried) == MAX_ATTEMPTS + MAX_OWN_ATTEMPTS
 
 
+def test_draws_start_on_the_free_floor():
+    free_m = np.array([[0.0, 2.0], [0.3, 2.1]])
+    here = StartPlace(centre_m=(0.0, 2.0), free_m=free_m, cell_m=0.05)
+    starts = np.array([each[0].start_m for each in paired_draws([[here]], 40, 1, 0, 1, serves_all)])
+    off_m = np.abs(starts[:, None] - free_m).max(axis=-1)
+    assert (off_m.min(axis=1) <= 0.0255).all()
+    assert set(off_m.argmin(axis=1)) == {0, 1}
+
+
 def test_places_are_far_apart_and_free():
     scene = Weaver().sample_room().scene
     places = np.array([one.centre_m for one in places_of(scene, (0.7, 3.4), 5, 0)])

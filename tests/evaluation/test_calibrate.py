@@ -17,6 +17,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.evaluation.antenna_fits import fit_channels
 from mmweaver.evaluation.calibrate import Calibration, calibrate
+from mmweaver.evaluation.receiver_fits import skirt_end
 from mmweaver.evaluation.signal_evidence import ComparedSignal, SignalEvidence
 from mmweaver.propagation.adc_synthesis import AdcSynthesis
 from mmweaver.propagation.board_correction import corrected
@@ -169,6 +170,16 @@ def test_a_recording_is_corrected_by_the_board_that_it_was_calibrated_from(board
     assert amiss_db(mended, room) < amiss_db(raw, room) - 2
     before, after = (np.abs(values[:, near, loops]).max() for values in (raw, mended))
     assert after < 0.1 * before
+
+
+def test_where_a_skirt_ends():
+    range_m = np.arange(100) * 0.05
+    falling = 1e4 * 10 ** (-range_m * 8)
+    assert skirt_end(falling, 1.0, range_m)[1].endswith("noise of a cell")
+    wall = falling + 3e3 * np.exp(-(((range_m - 0.6) / 0.05) ** 2))
+    end, how = skirt_end(wall, 1.0, range_m)
+    assert range_m[end] < 0.6
+    assert "echo at" in how
 
 
 def test_what_cannot_be_calibrated_is_refused():

@@ -115,3 +115,9 @@ def test_a_recording_of_some_other_place_has_no_scale():
     expected, own = torch.tensor([[1.0, 1e-9]]), torch.tensor([[1e-9, 1.0]])
     with pytest.raises(InputError, match="no echo"):
         agreeing_gain([(expected, own)])
+
+
+def test_the_gain_is_the_middle_of_what_both_show():
+    expected = torch.tensor([[4.0, 4.0, 400.0, 1e-9]])
+    own = torch.ones(1, 4)
+    assert agreeing_gain([(expected, own)]) == pytest.approx(2.0)

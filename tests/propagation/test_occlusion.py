@@ -49,6 +49,13 @@ def test_thighs_occlude_all_along_and_not_about_joints_alone():
     assert all(occluded(torch.tensor(behind), _standing(0.0, 2.0, 0.7)[None])[0].tolist())
 
 
+def test_places_may_differ_from_frame_to_frame():
+    """Another person walks behind the one who stands."""
+    joints = torch.stack([_standing(0.0, 2.0, 1.2)] * 2)
+    places = torch.tensor([[(0.0, 4.0, 0.1), (1.0, 4.0, 0.1)], [(1.0, 4.0, 0.1), (0.1, 4.0, 0.1)]])
+    assert occluded(places, joints).tolist() == [[True, False], [False, True]]
+
+
 def test_agrees_with_the_rays_by_which_the_ray_tracer_decides():
     """Capsules in the network, rays at the hull of the same capsules in the ray tracer."""
     joints = _standing(0.1, 2.0, 1.0)[None]

@@ -43,12 +43,33 @@ def test_up_and_down_differ_in_their_order():
     assert up["turns"] == 1
 
 
+def test_the_place_of_the_radar_does_not_matter_sideways_and_up():
+    here, there = spatiotemporal_features(arm()), spatiotemporal_features(arm(shift_m=0.4))
+    for name in ("order_up_0", "order_aside_3", "reach_up_above", "fast_up", "order_lasts"):
+        assert np.isclose(here[name], there[name], atol=1e-6)
+
+
+def test_rests_change_little():
+    brief, long = spatiotemporal_features(raised_arm(2, 2)), spatiotemporal_features(raised_arm(14, 20))
+    for name in ("course_up_1", "course_up_4", "course_velocity_1", "course_velocity_4", "course_lasts"):
+        assert np.isclose(brief[name], long[name], atol=0.12), name
+    assert 1.0 < long["course_lasts"] < 1.5
+
+
 def test_the_order_of_heights_and_velocities_is_seen():
     up, down = spatiotemporal_features(raised_arm(3, 3)), spatiotemporal_features(raised_arm(3, 3, back=True))
     assert up["course_up_0"] < -0.2 < 0.2 < up["course_up_5"]
     assert down["course_up_0"] > 0.2 > -0.2 > down["course_up_5"]
     assert up["course_velocity_1"] < -1 < 1 < up["course_velocity_4"]
     assert np.isclose(up["course_fastest_away"], 1.5)
+
+
+def test_a_left_arm_is_none_of_the_right():
+    right, left = (spatiotemporal_features(raised_arm(3, 3, side=side)) for side in (1.0, -1.0))
+    assert right["side_energy_aside"] > 0.1 > -0.1 > left["side_energy_aside"]
+    for name in ("side_energy_aside", "order_aside_3", "course_aside_3"):
+        assert np.isclose(right[name], -left[name], atol=1e-9), name
+    assert right["side_right_high_speed"] > 1.5 * left["side_right_high_speed"]
 
 
 @pytest.mark.parametrize("window", [arm(), raised_arm(1, 1)])

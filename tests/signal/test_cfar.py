@@ -79,3 +79,12 @@ def test_training_cells_are_cyclic_in_doppler():
 def test_impossible_maps_and_rates_are_refused(shape: tuple[int, int], rate: float, named: str):
     with pytest.raises(InputError, match=named):
         ca_cfar(np.ones((1, *shape)), false_alarm_rate=rate)
+
+
+@pytest.mark.parametrize("num_doppler", [1, 2, 5, 8, 15, 16, 19])
+def test_areas_do_not_reach_round_a_short_doppler_axis(num_doppler: int):
+    cells = CfarCells(guard=(2, 3), training=(6, 8)).within(num_doppler)
+    for reach in (cells.guard[1], cells.training[1]):
+        doppler_bins = np.arange(-reach, reach + 1) % num_doppler
+        assert len(set(doppler_bins)) >= len(doppler_bins) - 1, "at most the two ends, half a turn away, are one cell"
+    assert (cells.guard[0], cells.training[0]) == (2, 6)

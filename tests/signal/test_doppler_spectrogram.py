@@ -44,6 +44,14 @@ def test_a_swinging_point_draws_its_velocity():
     assert seen.range_m[0] <= 1.2 <= seen.range_m[1] < 2.0  # the wall is static
 
 
+def test_windows_run_on_where_frames_do():
+    config = replace(CONFIG, num_loops=16, frame_period_s=16 * CONFIG.loop_period_s)
+    adc = samples_of(config, lambda t: 1.2 + 0.5 * t, 40)
+    seen = micro_doppler(adc, window_loops=64)
+    assert seen.power.shape[1] == 64
+    assert seen.radial_velocity_mps[seen.power.sum(axis=0).argmax()] == pytest.approx(0.5, abs=0.3)
+
+
 def test_too_few_loops_are_refused():
     with pytest.raises(InputError, match="too few"):
         micro_doppler(samples_of(replace(CONFIG, num_loops=2), lambda t: 1.2 + 0 * t, 2))

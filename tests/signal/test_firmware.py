@@ -11,6 +11,7 @@ from mmweaver.core.presets import BGT60, IWR1443_MARS, IWR1443_RADHAR
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.seeding import stream
+from mmweaver.signal.cube import radar_cube
 from mmweaver.signal.firmware import firmware_points, firmware_spectrum, range_step_m
 
 Target = tuple[float, float, float, float, float]  # x, y, z in m, radial velocity in m/s, amplitude in counts
@@ -129,6 +130,24 @@ def test_counts_are_those_of_the_16_bit_chain():
     assert cloud.intensity.max() == pytest.approx(np.abs(spectrum[0, 50, 8, 0]), rel=0.01)
     loud = replace(adc, samples=adc.samples * 1000)
     assert np.abs(firmware_spectrum(loud, FirmwareSettings()).real).max() <= 32767
+
+
+def test_a_scale_gives_the_same_counts():
+    adc = targets_adc(IWR1443_MARS, (0.0, 2.0, 0.0, 0.7, 100.0))
+    count = IWR1443_MARS.adc_count_sqrt_mw
+    scaled = AdcCube(samples=(adc.samples * np.float32(count)).astype(np.complex64), config=adc.config, scale=1.0)
+    one, other = firmware_points(adc), firmware_points(scaled)
+    assert other.x_m == pytest.approx(one.x_m)
+    assert other.intensity == pytest.approx(one.intensity, abs=1.5)
+
+
+def test_a_cube_gives_the_targets_of_its_samples():
+    config = IWR1443_MARS
+    adc = targets_adc(config, (0.4, 1.9, 0.1, 0.71, 60.0))
+    cloud = firmware_points(radar_cube(adc))
+    best = np.argmax(cloud.intensity)
+    assert around(cloud, 0.4, 1.9, 0.1)[best]
+    assert cloud.radial_velocity_mps[best] == pytest.approx(0.71, abs=0.01)
 
 
 def test_zero_signals_have_no_points_and_other_radars_are_refused():

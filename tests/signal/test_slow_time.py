@@ -11,7 +11,7 @@ from mmweaver.core.records import AdcCube, RadarCube
 from mmweaver.propagation.reference_sum import exact_frame
 from mmweaver.signal.cube import radar_cube, remove_static
 from mmweaver.signal.points import point_cloud
-from mmweaver.signal.slow_time import moving_cells, slow_time_doppler
+from mmweaver.signal.slow_time import circle_centre, moving_cells, slow_time_doppler
 from mmweaver.signal.spectra import range_doppler_power
 from mmweaver.signal.vital_signs import breathing_rate, heart_rate
 
@@ -93,6 +93,19 @@ def test_each_thing_is_one_point_a_frame_and_clutter_removal_leaves_what_moves(n
     assert power.argmax() == round(2.3 / config.range_resolution_m)
 
 
+def test_every_chirp_of_a_short_frame_counts():
+    """A rectangular window: two loops have half the noise of one."""
+    rng = np.random.default_rng(1)
+    levels = []
+    for num_loops in (1, 2):
+        config = replace(SLOW, num_loops=num_loops)
+        shape = (400, num_loops, 1, 4, 64)
+        noise = (rng.standard_normal(shape) + 1j * rng.standard_normal(shape)).astype(np.complex64)
+        cube = radar_cube(AdcCube(samples=noise, config=config, scale=1.0))
+        levels.append(np.mean(np.abs(cube.values) ** 2))
+    assert levels[0] / levels[1] == pytest.approx(2.0, rel=0.05)
+
+
 def test_a_rate_in_noise_is_not_clear():
     """As large as breathing, but with power at all frequencies: most recordings of 30 s do not seem to breathe."""
     rng = np.random.default_rng(3)
@@ -100,3 +113,14 @@ def test_a_rate_in_noise_is_not_clear():
     hearts = [heart_rate(1e-3 * rng.standard_normal(600), 0.05) for _ in range(100)]
     assert sum(rate.is_clear for rate in found) < 50
     assert sum(rate.is_clear for rate in hearts) < 10
+
+
+def test_nothing_is_invented():
+    rng = np.random.default_rng(2)
+    noise = np.cumsum(rng.standard_normal(400)) * 1e-6
+    assert not breathing_rate(noise, 0.05).is_clear  # too small
+    assert breathing_rate(noise[:10], 0.05) is None
+    assert heart_rate(noise, 0.5) is None  # two frames a second
+    assert circle_centre(np.linspace(0, 1, 50) + 0j) is None  # a line
+    cube = recorded(SLOW, lambda time_s: 1.4 + 0 * time_s, 4)
+    assert moving_cells(cube) == []

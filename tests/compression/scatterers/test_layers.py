@@ -3,10 +3,12 @@ import torch
 
 from mmweaver.compression.scatterers.layers import (
     Layers,
+    compact,
     fit_static,
     static_cells,
     static_response,
     static_values,
+    strongest,
     subtract_static,
 )
 from mmweaver.signal.point_response import PointResponse, Points
@@ -16,6 +18,17 @@ from tests.compression.echoes import SMALL
 def some(amplitudes: list[list[float]]) -> Points:
     size = torch.tensor(amplitudes)
     return Points(range_bin=size * 10, doppler_bin=size, direction=torch.stack([size, -size], -1), amplitude=size + 0j)
+
+
+def test_padding_is_moved_to_the_end_and_trimmed():
+    points = compact(some([[0.0, 0.3, 0.0, 0.1], [0.0, 0.0, 0.2, 0.0]]))
+    assert points.amplitude.real.tolist() == torch.tensor([[0.3, 0.1], [0.2, 0.0]]).tolist()
+    assert points.range_bin[0].tolist() == torch.tensor([3.0, 1.0]).tolist()
+
+
+def test_the_strongest_are_selected_over_all_frames():
+    points = strongest(some([[0.5, 0.3, 0.1], [0.4, 0.05, 0.0]]), 3)
+    assert (points.amplitude != 0).sum(dim=1).tolist() == [2, 1]
 
 
 def test_a_static_layer_is_recovered():

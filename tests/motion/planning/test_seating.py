@@ -15,6 +15,8 @@ from mmweaver.motion.planning.seating import (
     Sitting,
     centred_to_lie,
     pulled_out,
+    random_subset,
+    turned,
     usable_seats,
     usual_variation,
 )
@@ -34,6 +36,28 @@ def test_a_seat_is_mostly_sat_on_as_it_is_made_for():
     ways = _ways_of_sitting(sitting)
     assert 0.4 < np.mean([way is sitting for way in ways]) < 0.6
     assert all(way.cost > 0 for way in ways if way is not sitting)
+
+
+def test_turned_or_further_back_the_feet_stay_before_the_seat():
+    (sitting,) = usable_seats(FloorMap(room(seats=(seat(),)), WINDOW_M, 1.75), SkeletonProportions(1.75))
+    reach = float(np.hypot(*(sitting.feet_m - sitting.seat_m)))
+    ways = _ways_of_sitting(sitting)
+    assert {round(way.facing_rad - sitting.facing_rad, 1) for way in ways} >= {-0.4, 0.0, 0.4}
+    for way in ways:
+        ahead = np.array([np.cos(way.facing_rad), np.sin(way.facing_rad)])
+        assert (way.feet_m - way.seat_m) @ ahead == pytest.approx(reach)
+        assert np.hypot(*(way.seat_m - sitting.seat_m)) <= 0.051
+
+
+def test_nobody_sits_back_on_a_shallow_seat():
+    shallow = Sitting(feet_m=np.array([0.0, 2.0]), facing_rad=-1.57, height_m=0.45, seat_m=np.zeros(2), depth_m=0.3)
+    assert all((way.seat_m == shallow.seat_m).all() for way in _ways_of_sitting(shallow))
+
+
+def test_some_seats_are_left_out_but_never_all():
+    seats = usable_seats(FloorMap(room(seats=(seat(-0.6), seat(0.6))), WINDOW_M, 1.75), SkeletonProportions(1.75))
+    kept = [random_subset(seats, np.random.default_rng(k)) for k in range(50)]
+    assert {len(some) for some in kept} == {1, 2}
 
 
 def test_who_lies_down_is_in_the_middle_of_the_couch():
@@ -63,6 +87,17 @@ def test_knees_clear_the_edge_of_a_deep_seat_and_a_chair_is_sat_on_in_the_middle
     assert 0.1 < ahead_m < 0.45 - 0.12 + 1e-9
     assert bed.knees_m >= bed.edge_m + 0.05 - 1e-9
     assert bed.feet_m - bed.seat_m == pytest.approx(chair.feet_m - chair.seat_m)
+
+
+def test_who_turns_on_a_seat_moves_ahead_past_its_corner():
+    square = Sitting(
+        feet_m=np.array([0.0, 1.6]), facing_rad=-np.pi / 2, height_m=0.45, seat_m=np.array([0.0, 2.0]),
+        width_m=0.6, depth_m=0.6, edge_m=0.3, knees_m=0.36,
+    )  # fmt: skip
+    aslant = turned(square, 0.6)
+    assert square.clear_knees() is square
+    assert aslant.knees_m >= aslant.edge_m + 0.05 - 1e-9
+    assert np.hypot(*(aslant.seat_m - square.seat_m)) > 0.05
 
 
 def test_a_chair_is_pulled_back_from_what_is_ahead_of_it_where_there_is_floor_behind():

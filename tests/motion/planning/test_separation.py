@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.motion.planning.separation import are_separate, separations_m
+from mmweaver.motion.planning.separation import are_separate, is_clear_of, separations_m
 from tests.rooms import standing_person
 
 
@@ -34,3 +34,13 @@ def test_they_are_compared_at_the_same_times():
     assert are_separate(ahead, behind)
     assert separations_m(ahead, late)[0] == pytest.approx(1.4)
     assert not are_separate(ahead, standing_person((1.0, 2.0, -1.2)))
+
+
+def test_a_way_keeps_clear_of_hands_too():
+    person = standing_person((0.0, 2.0, -1.2))
+    reaching = person.joints_m.copy()
+    reaching[:, 20] = reaching[:, 18] + [0.6, 0.0, 0.0]
+    time_s = np.linspace(0, 2, 41)
+    track = np.tile([1.0, 2.0], (41, 1))
+    assert is_clear_of(track, time_s, person)
+    assert not is_clear_of(track, time_s, replace(person, joints_m=reaching))

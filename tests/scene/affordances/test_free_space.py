@@ -30,6 +30,19 @@ def test_free_blocked_occluded_and_outside_places(box_room: Callable):
     assert _at(space, 0.0, 0.4) == (False, False)  # too close
 
 
+def test_a_place_behind_a_table_is_free_but_unseen(box_room: Callable):
+    counter = ((-1.0, 1.0), (1.7, 1.9), (0.0, 0.9))
+    space = reconstruct(box_room(boxes=[counter], pitch_deg=18.0).photo(width=640, height=480)).free_space
+    assert _at(space, 0.0, 2.2) == (True, False)
+    assert _at(space, 0.0, 1.8) == (False, False)
+
+
+def test_a_lamp_above_head_height_does_not_block(box_room: Callable):
+    lamp = ((-0.2, 0.2), (2.3, 2.7), (2.05, 2.2))
+    space = reconstruct(box_room(boxes=[lamp], pitch_deg=8.0).photo(width=640, height=480)).free_space
+    assert _at(space, 0.0, 2.5)[0]
+
+
 FLOOR_M = -1.1
 LEVEL = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 

@@ -8,8 +8,8 @@ import pytest
 from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.records import CameraIntrinsics, ClassMask, Plane, RgbdPhoto
 from mmweaver.scene.coco_stuff import NAMES
-from mmweaver.scene.layout.panes import fill_panes, find_wall_panels
-from tests.rooms import back_wall, side_wall
+from mmweaver.scene.layout.panes import add_wall_panels, fill_panes, find_wall_panels
+from tests.rooms import back_wall, plane, side_wall
 
 SHAPE = (120, 160)
 LENS = CameraIntrinsics(fx=120.0, fy=120.0, cx=79.5, cy=59.5, width=160, height=120)
@@ -35,6 +35,18 @@ def test_holes_and_points_behind_are_put_on_the_walls_plane(behind_m: float, nam
     closed, sentences = fill_panes(photo)
     assert closed.depth_m == pytest.approx(wall_m, rel=0.01)
     assert sentences[0].startswith("1 windows or mirrors")
+
+
+def test_a_curtain_next_to_a_pane_does_not_shift_its_plane():
+    photo, wall_m, pane = wall_with_pane(9.0)
+    assert photo.classes is not None
+    index, depth = np.full(SHAPE, NAMES.index("wall-other"), np.uint8), photo.depth_m.copy()
+    index[pane] = NAMES.index("window-other")
+    curtain = np.zeros(SHAPE, bool)
+    curtain[20:90, 50:60] = curtain[20:90, 110:120] = True
+    index[curtain], depth[curtain] = NAMES.index("curtain"), wall_m[curtain] - 0.15
+    closed, _ = fill_panes(replace(photo, depth_m=depth, classes=ClassMask(index=index, names=NAMES)))
+    assert closed.depth_m[pane] == pytest.approx(wall_m[pane], rel=0.01)
 
 
 def test_a_screen_gets_its_own_plane_and_not_the_walls():
@@ -79,8 +91,21 @@ def test_a_pane_is_a_rectangle_of_its_own_material(name: str, material: str):
     assert panel.half_size_m == pytest.approx((0.5, 0.5), abs=0.03)
 
 
+def test_a_leaf_in_front_of_its_wall_keeps_its_offset():
+    (panel,) = _found(_photo("door", depth_m=WALL_M - 0.05))
+    assert panel.centre_m[1] == pytest.approx(WALL_M - 0.05, abs=0.005)
+
+
 def test_regions_off_the_walls_small_ones_and_other_classes_are_ignored():
     assert _found(_photo("tv", depth_m=2.2)) == ()
     assert _found(_photo("window-other", rows=slice(30, 36))) == ()
     assert _found(_photo("couch")) == ()
     assert _found(replace(_photo("window-other"), classes=None)) == ()
+
+
+def test_a_panel_replaces_the_planes_that_it_covers():
+    (panel,) = _found(_photo("window-other"))
+    same = plane("panel", (0.7, WALL_M - 0.03, 0.2), (0, -1, 0), (1, 0, 0), (0.3, 0.3), "wood")
+    elsewhere = plane("panel", (-0.7, 2.0, 0.2), (0, -1, 0), (1, 0, 0), (0.3, 0.3), "wood")
+    wall = back_wall(WALL_M)
+    assert add_wall_panels([wall, same, elsewhere], [panel], [wall]) == (panel, wall, elsewhere)

@@ -38,6 +38,19 @@ def test_the_floor_that_another_photo_sees_is_the_first_photos_too():
     assert pose.position_m == pytest.approx((0.5, 0.0, 0.0))
 
 
+def test_the_floor_of_a_camera_that_stands_lower_is_nearer():
+    own = [_gravity(UP, -1.5, has_floor=True), _gravity(TILTED, -0.3, has_floor=False)]
+    first, second = common_gravity(own, [_beside(0.0, down_m=0.4)])[0]
+    assert first.floor_z_m == pytest.approx(-1.5)
+    assert second.floor_z_m == pytest.approx(-1.1)
+
+
+def test_without_any_floor_the_first_photos_assumption_holds():
+    own = [_gravity(TILTED, -1.0, has_floor=False), _gravity(UP, -1.4, has_floor=False)]
+    first, _ = common_gravity(own, [_beside(0.5)])[0]
+    assert first == own[0]
+
+
 def test_of_floors_that_disagree_most_photos_count():
     own = [_gravity(TILTED, -1.4, True), _gravity(UP, -1.4, True), _gravity(UP, -1.4, True)]
     first = common_gravity(own, [_beside(0.5), _beside(1.0)])[0][0]
