@@ -32,7 +32,7 @@ def test_what_once_failed_is_refused(readers: dict[str, Reader], folder: Path):
         assert report.refused == 1, f"{name}, {what} is accepted"
 
 
-@pytest.mark.parametrize("cases", [8, pytest.param(60, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("cases", [12, pytest.param(60, marks=pytest.mark.slow)])
 def test_damaged_files_are_refused_in_one_line_or_read_soundly(cases: int, readers: dict[str, Reader], folder: Path):
     for reader in readers.values():
         report = fuzz(reader, folder, seed=14, cases=range(cases // FEW.get(reader.name, 1)))
