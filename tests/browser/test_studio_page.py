@@ -114,19 +114,6 @@ def test_a_click_on_the_floor_moves_the_start(page: Any):
     assert "m right and" in said
 
 
-def test_a_click_where_nobody_can_stand_takes_the_nearest_place(page: Any):
-    wall = page.evaluate("studio.player.room.nearestStandable(-5, 9).place")
-    beyond = [wall[0], wall[1] + 0.5]
-    x, y = page.evaluate(f"studio.player.scene.toPage({beyond[0]}, {beyond[1]})")
-    page.mouse.click(x, y)
-    page.wait_for_selector(IDLE, timeout=60_000)
-    assert "nearest free place is" in page.inner_text(".status")
-    at = page.evaluate("studio.asked().at")
-    assert page.evaluate(f"studio.player.room.nearestStandable({at[0]}, {at[1]}).distance") < 0.05
-    page.evaluate("studio.follow({at: null})")
-    page.wait_for_selector(IDLE, timeout=60_000)
-
-
 def test_a_path_is_drawn_on_the_floor(page: Any):
     ask(page, "a person walks to the left")
     page.get_by_role("button", name="Draw path").click()
@@ -155,19 +142,6 @@ def test_scrubbing_moves_all_panels(page: Any):
     frames = page.evaluate("studio.player.shownFrames()")
     assert len(set(frames.values())) == 1
     assert 8 <= frames["scene"] <= 12
-
-
-def test_hovering_a_range_draws_its_arc(page: Any):
-    box = page.locator(".maps canvas").first.bounding_box()
-    near, far = page.evaluate("studio.player.sequence.header.range_m")
-    share = 0.4
-    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + 24 + (1 - share) * (box["height"] - 60))
-    arc_m = page.evaluate("studio.player.scene.arcRangeM()")
-    assert abs(arc_m - (near + share * (far - near))) < 0.02 + (far - near) / (box["height"] - 60)  # and a pixel
-    assert abs(arc_m - page.evaluate("studio.player.panel('range_doppler').cursor.y")) < 0.02
-    assert "dBm" in page.locator(".maps .readout").first.inner_text()
-    page.mouse.move(5, 5)
-    assert page.evaluate("studio.player.scene.arcRangeM()") is None
 
 
 def test_the_keyboard_plays_and_steps(page: Any):
@@ -296,25 +270,6 @@ def test_live_runs_on_and_takes_sentences(page: Any):
     assert page.evaluate("studio.result.frames") <= 200
     page.get_by_role("button", name="Stop").click()
     assert "s of radar in" in ask(page, "a person waves")
-
-
-@pytest.mark.slow  # test_live_runs_on_and_takes_sentences and tests/studio/test_live.py hold the parts
-def test_twenty_seconds_live(page: Any, address: Running):
-    """Without jumps, in memory that does not grow; how fast: `make bench` (benchmarks/studio.py)."""
-    ask(page, "a person walks to the left")
-    page.get_by_role("button", name="Live").click()
-    heap, resident = [], []
-    for seconds, text in ((8, "a person claps"), (14, "a person walks to the right"), (20, "a person sits down")):
-        page.wait_for_function(f"() => studio.live && studio.live.frames > {10 * seconds}", timeout=120_000)
-        page.evaluate("window.gc && gc()")
-        heap.append(page.evaluate("performance.memory.usedJSHeapSize") / 1e6)
-        resident.append(address.memory_mb)
-        page.locator(".sentence").first.fill(text)
-        page.locator(".sentence").first.press("Enter")
-    page.wait_for_function("() => studio.live.frames > 220", timeout=120_000)
-    page.get_by_role("button", name="Stop").click()
-    assert heap[-1] - heap[0] < 30, heap
-    assert resident[-1] - resident[0] < 60, resident
 
 
 def test_a_room_without_a_floor_offers_recovery_options(page: Any, tmp_path: Path):

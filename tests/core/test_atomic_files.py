@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from mmweaver.core.atomic_files import atomic_file, atomic_files, create_once, staged_folder, written
+from mmweaver.core.atomic_files import atomic_file, atomic_files, staged_folder
 from mmweaver.core.checksums import SUMS_FILE, damages, read_sums
 from mmweaver.core.errors import InputError
 from mmweaver.core.staging import COMMITTED, staging_path
@@ -152,14 +152,6 @@ def test_files_that_belong_together_are_all_there_or_none(tmp_path: Path):
     assert names(tmp_path) == ["b.txt"]
 
 
-def test_only_a_full_disk_is_told_to_free_space(tmp_path: Path):
-    for number, advice in ((28, "free some space"), (122, "free some space"), (30, "another disk"), (36, "shorter")):
-        with pytest.raises(InputError, match=advice) as caught, staged_folder(tmp_path / "out"):
-            raise OSError(number, os.strerror(number))
-        assert ("free some space" in str(caught.value)) == (number in (28, 122))
-    assert names(tmp_path) == []
-
-
 def test_what_dead_processes_left_is_removed_and_what_living_ones_write_is_not(tmp_path: Path):
     code = "import sys; from pathlib import Path; from mmweaver.core.staging import staging_path;"
     code += "staging_path(Path(sys.argv[1])).mkdir(); staging_path(Path(sys.argv[1])).write_text('')"
@@ -199,40 +191,3 @@ def test_what_another_host_writes_stays_for_an_hour_after_its_last_change(
     with atomic_file(tmp_path / "a.txt") as temporary:
         temporary.write_text("mine")
     assert other.exists() == is_kept
-
-
-def test_a_link_is_followed(tmp_path: Path):
-    (tmp_path / "real").mkdir()
-    (tmp_path / "out").symlink_to("real")
-    (tmp_path / "file.txt").symlink_to("real/file.txt")
-    with staged_folder(tmp_path / "out") as stage:
-        (stage / "a.txt").write_text("a")
-    with atomic_file(tmp_path / "file.txt") as temporary:
-        temporary.write_text("b")
-    assert (tmp_path / "real" / "file.txt").read_text() == "b"
-    assert (tmp_path / "out").is_symlink()
-    assert (tmp_path / "file.txt").is_symlink()
-
-
-def test_a_file_that_another_command_replaces_leaves_the_checksums(tmp_path: Path):
-    with staged_folder(tmp_path / "out") as stage:
-        (stage / "a.txt").write_text("a")
-        (stage / "b.txt").write_text("b")
-    with atomic_file(tmp_path / "out" / "a.txt") as temporary:
-        temporary.write_text("another")
-    assert set(read_sums(tmp_path / "out") or {}) == {"b.txt"}
-
-
-def test_the_first_of_several_creates(tmp_path: Path):
-    assert create_once(tmp_path / "plan.json", "one") == "one"
-    assert create_once(tmp_path / "plan.json", "two") == "one"
-    assert names(tmp_path) == ["plan.json"]
-    assert written()[-1] == tmp_path / "plan.json"
-
-
-def test_the_longest_name_that_fits_can_be_written(tmp_path: Path):
-    target = tmp_path / ("a" * 251 + ".npz")
-    with atomic_file(target) as temporary:
-        temporary.write_text("")
-        assert temporary.suffix == ".npz"
-    assert target.is_file()

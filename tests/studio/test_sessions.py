@@ -64,17 +64,5 @@ def test_all_sessions_together_fit_into_memory(monkeypatch: pytest.MonkeyPatch):
     both.end_all()
 
 
-def test_a_session_that_never_left_makes_room(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(sessions, "MAX_SESSIONS", 1)
-    one = Sessions()
-    forgotten = one.open()
-    with pytest.raises(InputError, match="close a tab"):
-        one.open()
-    forgotten.used_s -= 2 * sessions.UNUSED_S
-    assert one.open() is not forgotten
-    assert not forgotten.folder.exists()
-    one.end_all()
-
-
 def test_a_result_is_a_record():
     assert replace(result(), meta={"text": "x"}).meta == {"text": "x"}
