@@ -5,7 +5,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from motiongpt_files import published, tiny
-from studies.motion.motiongpt_weights import save_published, save_weights
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.motiongpt.motiongpt import MotionGPT, check_std
