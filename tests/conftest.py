@@ -72,7 +72,7 @@ def blank_training_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     """
     for module, name in (
         ("mmweaver.training.network_training", "draw_sheet"), ("mmweaver.training.activity_training", "draw_confusion"),
-        ("studies.paper.paper_training", "draw_sheet"),
+        ("mmweaver.training.hypernetwork_training", "draw_sheet"),
     ):  # fmt: skip
         monkeypatch.setattr(f"{module}.{name}", lambda *_, **__: np.zeros((2, 2, 3), np.uint8))
 

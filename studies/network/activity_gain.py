@@ -38,8 +38,11 @@ from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.datasets.room_generation import pose_of
 from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork, TimeHead, load_activity
 from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.models.hypernetwork import HyperNetwork
+from mmweaver.models.hypernetwork_rooms import load_hypernetwork
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scatterer_network import WeaverNetwork
+from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.propagation.diffuse_clutter import seed_of_room
 from mmweaver.propagation.ray_traced import Simulator
@@ -51,7 +54,6 @@ from mmweaver.training.activity_training import TRAIN_MAPS, TRAIN_SPLITS, activi
 from studies.manifest import StudyRun
 from studies.network.learned_scores import OTHER, board_seen_in, empty_room, interval
 from studies.network.room_cache import RoomCache, digest
-from studies.paper.paper_method import load_paper, paper_field
 from studies.result_rows import complete_rows, dataset_of
 from studies.study import Reads
 
@@ -175,14 +177,16 @@ def with_generated(
 
 def paper_in(weights: Path) -> Method:
     """The paper's network."""
-    network = load_paper(weights)
+    network, _ = load_hypernetwork(weights)
+    assert isinstance(network, HyperNetwork), "weights of target signal"
 
     def method(room: UnseenRoom) -> Maker:
         config, num_frames = room.room.config, room.room.joints_m.shape[1]
+        image = SceneTensors.of(room.photographed, config).image
 
         def make(pose: PoseSequence, seed: int) -> RadarCube:
             motion = FrameMotion.of(pose, config, num_frames)
-            return paper_field(network, room.photographed, config, motion.joints_m, motion.velocity_mps).cube()
+            return network.field(image, config, motion.joints_m, motion.velocity_mps).cube()
 
         return make
 

@@ -17,7 +17,6 @@ from mmweaver.viz.panels import draw_azimuth_with_clutter, draw_micro_doppler, d
 from mmweaver.viz.theme import STYLE
 from mmweaver.weaver.front_door import Weaver
 from studies.manifest import StudyRun
-from studies.paper.power_method import PowerFields
 from studies.scene.room_pictures import save_small
 from studies.study import Reads
 
@@ -33,7 +32,7 @@ def views_of(
     """The same room, motion and seed by each method, and with weights `power` of recipe paper_power."""
     found = {}
     methods = [Weaver(name) for name in METHODS]
-    methods += [] if power is None else [Weaver(PowerFields(power))]
+    methods += [] if power is None else [Weaver.from_pretrained(power)]
     for name, weaver in zip((*METHODS, POWER), methods, strict=False):
         room = weaver.read_room(next(folder.glob("rgb.*")), folder / "depth.png", folder / "camera.json")
         made = weaver.generate(room, text, frames=frames, seed=seed, keep_adc=False, board="ideal")

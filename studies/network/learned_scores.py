@@ -36,8 +36,12 @@ from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.datasets.room_generation import generate_sequence, pose_of
 from mmweaver.evaluation.background_board import BackgroundBoard
 from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.models.hypernetwork import HyperNetwork
+from mmweaver.models.hypernetwork_rooms import FieldRoom, load_hypernetwork
 from mmweaver.models.neural_path_solver import LearnedRoom
+from mmweaver.models.power_network import PowerNetwork
 from mmweaver.models.scatterer_network import ScattererNetwork
+from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.models.weights import load_weights, read_card, shipped_weights
 from mmweaver.propagation.diffuse_clutter import seed_of_room
 from mmweaver.propagation.frame_clock import FrameClock
@@ -46,12 +50,9 @@ from mmweaver.propagation.static_paths import ALL_PATHS, Propagation
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.signal.cube import radar_cube
+from mmweaver.training.hypernetwork_training import HypernetworkRecipe, initial_power_network
 from studies.manifest import StudyRun
 from studies.network.room_cache import RoomCache, digest
-from studies.paper.paper_method import paper_method
-from studies.paper.power_method import FieldRoom, load_power
-from studies.paper.power_network import PowerNetwork
-from studies.paper.power_training import PowerRecipe, initial_power_network
 from studies.result_rows import complete_rows, dataset_of
 from studies.scores.scorecard import METRICS, scorecard
 from studies.study import Reads
@@ -309,11 +310,23 @@ def cases_of(
     return cases
 
 
+def paper_method(weights: Path) -> Callable[[Any], RadarCube]:
+    """A row of `learned_scores`: the cube of a `Case`, from room.photo, room.config and joints."""
+    network, _ = load_hypernetwork(weights)
+    assert isinstance(network, HyperNetwork), "weights of target signal"
+
+    def method(case: Any) -> RadarCube:
+        image = SceneTensors.of(reconstruct(case.room.photo), case.room.config).image
+        return network.field(image, case.room.config, *case.joints).cube()
+
+    return method
+
+
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, action=Reads, required=True)
     parser.add_argument("--weights", type=Path, action=Reads, help="of recipe weaver (default: those included)")
     parser.add_argument("--paper", type=Path, action=Reads, help="of recipe paper, for a row of its own")
-    parser.add_argument("--power", type=Path, action=Reads, help="of recipe paper_power, for a row of its own")
+    parser.add_argument("--power", type=Path, action=Reads, help="of target power, for a row of its own")
     parser.add_argument("--split", default="test_room")
     parser.add_argument("--each", type=int, default=1, help="sequences of each room")
     parser.add_argument("--most", type=int, help="rooms, sampled at random (default: all that have the split)")
@@ -345,10 +358,11 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         methods["paper"] = paper_method(options.paper)
         about["paper"] = read_card(options.paper).__dict__
     if options.power is not None:
-        power, power_card = load_power(options.power)
+        power, power_card = load_hypernetwork(options.power)
+        assert isinstance(power, PowerNetwork), "weights of target power"
         methods["paper_power"] = learned(power, lambda case: case.room)
         methods["paper_power_wrong_photo"] = learned(power, lambda case: case.other)
-        recipe = PowerRecipe(is_anchored=bool(power_card.settings.get("is_anchored", True)))
+        recipe = HypernetworkRecipe(is_anchored=bool(power_card.settings.get("is_anchored", True)))
         methods["paper_power_untrained"] = learned(initial_power_network(recipe).eval(), lambda case: case.room)
         about["paper_power"] = power_card.__dict__
     if options.only:

@@ -1,33 +1,50 @@
-"""Fields of power as a method: recipe `paper_power`, in rooms by `FieldRoom`, in `Weaver(method=PowerFields(file))`."""
+"""Rooms whose signal comes from a hypernetwork: of target power (`FieldRoom`) or target signal (`SignalRoom`)."""
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import torch
 from torch import Tensor
 
-from mmweaver.core.board import Board
+from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.records import RadarCube, Scene
+from mmweaver.core.records import AdcCube, CubeGrid, RadarCube, Scene
 from mmweaver.core.seeding import stream
-from mmweaver.models.methods import Learned
+from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.models.hypernetwork import HyperNetwork
 from mmweaver.models.neural_path_solver import LearnedRoom
+from mmweaver.models.power_cells import CellSizes
+from mmweaver.models.power_network import CellEchoes, PowerEncoding, PowerNetwork
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.models.weights import WeightsCard, load_into, read_card
 from mmweaver.propagation.mean_scatterers import MeanEchoes
 from mmweaver.propagation.paths import Paths
 from mmweaver.propagation.radar_equation import carrier, points_of
 from mmweaver.propagation.speckle import place_of, radial_scatterers
+from mmweaver.signal.cube import adc_from_cube
 from mmweaver.signal.point_response import PointResponse
-from studies.paper.power_cells import CellSizes
-from studies.paper.power_network import RECIPE, CellEchoes, PowerEncoding, PowerNetwork
+
+SIGNAL, POWER = "signal", "power"  # targets
+RECIPES = {"paper": SIGNAL, "paper_power": POWER}  # recipes of weights written before recipe `hypernetwork`
+RECIPE = "hypernetwork"
 
 
-def load_power(file: Path) -> tuple[PowerNetwork, WeightsCard]:
-    """Reads weights of recipe `paper_power`. Raises InputError for any other file."""
-    network = PowerNetwork(is_anchored=bool(read_card(file).settings.get("is_anchored", True)))
-    return network, load_into(network, file, recipe=RECIPE, made_by="python -m studies run train_power")
+def load_hypernetwork(file: Path) -> tuple[HyperNetwork | PowerNetwork, WeightsCard]:
+    """Loads weights of `mmweaver train hypernetwork` of either target.
+
+    Raises:
+        InputError: For any other file.
+    """
+    card = read_card(file)
+    target = RECIPES.get(card.recipe, card.settings.get("target") if card.recipe == RECIPE else None)
+    if target not in RECIPES.values():
+        raise InputError(f"{file} holds weights of recipe {card.recipe!r}; give those of: mmweaver train hypernetwork")
+    is_anchored = bool(card.settings.get("is_anchored", True))
+    network = HyperNetwork() if target == SIGNAL else PowerNetwork(is_anchored=is_anchored)
+    load_into(network, file)
+    return network, card
 
 
 class FieldRoom(LearnedRoom):
@@ -49,17 +66,41 @@ class FieldRoom(LearnedRoom):
         return place_of(echoes).float()
 
 
-class PowerFields(Learned):
-    """The method for `Weaver`; for radars at the camera, from which its coordinates are counted."""
+class SignalRoom:
+    """A room whose complex signal a hypernetwork writes as an INR, the paper's system: one person, no board, no noise.
 
-    def __init__(self, weights: Path) -> None:
-        super().__init__(weights)
-        self._power_network = load_power(weights)[0]
+    Args:
+        network: The hypernetwork.
+        scene: The room.
+        config: The radar.
+    """
 
-    def _encode(
-        self, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None
-    ) -> LearnedRoom:
-        return FieldRoom(self._power_network, scene, config, background=background, board=board)
+    background = None
+
+    def __init__(self, network: HyperNetwork, scene: Scene, config: RadarConfig) -> None:
+        self.network, self.config = network.eval(), config
+        self.image = SceneTensors.of(scene, config).image
+
+    def signal(
+        self, motions: Sequence[FrameMotion], *, seed: int, keep_adc: bool, first_frame: int = 0,
+        num_frames: int | None = None,
+    ) -> tuple[RadarCube, AdcCube | None]:  # fmt: skip
+        """The cube, and optionally samples with that cube; see `LearnedRoom.signal`.
+
+        Raises:
+            InputError: For no person, or several.
+        """
+        if len(motions) != 1:
+            raise InputError(f"a hypernetwork of target signal knows one person, not {len(motions)}; take target power")
+        own = motions[0]
+        joints_m, velocity_mps = (
+            part[own.num_segments // 2 :: own.num_segments] for part in (own.joints_m, own.velocity_mps)
+        )
+        field = self.network.field(self.image, self.config, joints_m, velocity_mps)
+        shown = slice(own.num_before, None)
+        grid = CubeGrid.of(self.config, len(joints_m) - own.num_before, first_frame)
+        cube = RadarCube(values=field.cube().values[shown], grid=grid, config=self.config, scale=1.0)
+        return cube, adc_from_cube(cube) if keep_adc else None
 
 
 def sample_cells(cells: CellEchoes, time_s: Tensor, config: RadarConfig, subject: int) -> Paths:

@@ -5,7 +5,7 @@ import torch
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.models.activity_network import ActivityNetwork
-from studies.paper.paper_loss import SHARE_CSSIM, paper_loss, perceived
+from mmweaver.training.signal_loss import SHARE_CSSIM, perceived, signal_loss
 from studies.scores.cube_scores import complex_ssim
 from tests.cubes import point_cube
 
@@ -13,7 +13,7 @@ from tests.cubes import point_cube
 def _terms(made: torch.Tensor, truth: torch.Tensor) -> dict[str, float]:
     torch.manual_seed(0)
     network = ActivityNetwork(AWR1843).eval().requires_grad_(False)
-    terms = paper_loss(made, truth, torch.tensor([2.0]), network, 1e-3)
+    terms = signal_loss(made, truth, torch.tensor([2.0]), network, 1e-3)
     return {name: float(term) for name, term in terms.items()}
 
 

@@ -9,8 +9,8 @@ import torch
 from torch import Tensor, nn
 
 from mmweaver.core.skeleton import BONES, NUM_JOINTS
+from mmweaver.models.power_cells import REFERENCE
 from mmweaver.models.scene_tensors import SceneTensors
-from studies.paper.power_cells import REFERENCE
 
 # raster of the volume: first place, step and count along range and both direction cosines
 FIRST, STEP, SHAPE = (0.0, -1.0, -1.0), (0.05, 0.0625, 0.125), (180, 33, 17)

@@ -5,9 +5,7 @@ import torch
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.skeleton import joint
-from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.scene.procedural.procedural_room import make_room
-from studies.paper.power_anchors import (
+from mmweaver.models.power_anchors import (
     FIRST,
     LEAST_M2,
     STEP,
@@ -17,6 +15,8 @@ from studies.paper.power_anchors import (
     surface_values,
     surface_volume,
 )
+from mmweaver.models.scene_tensors import SceneTensors
+from mmweaver.scene.procedural.procedural_room import make_room
 
 
 @pytest.fixture(scope="module")

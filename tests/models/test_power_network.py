@@ -10,11 +10,11 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import Scene
 from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.models.hypernetwork_rooms import FieldRoom, sample_cells
+from mmweaver.models.power_cells import CellSizes
+from mmweaver.models.power_network import CellEchoes, PowerEncoding, PowerNetwork
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.signal.spectra import azimuth_axis_rad, range_azimuth_power, range_doppler_power
-from studies.paper.power_cells import CellSizes
-from studies.paper.power_method import FieldRoom, sample_cells
-from studies.paper.power_network import CellEchoes, PowerEncoding, PowerNetwork
 from tests.rooms import standing_person
 
 BLOB = torch.tensor([2.2, 1.1, 0.25, 0.0])  # range, velocity, direction cosines
@@ -91,6 +91,6 @@ def test_a_field_read_finer_holds_as_much(scene: Scene):
 
 def test_no_more_numbers_than_the_papers():
     """A sequence of 20 frames: the room's field once, the person's for each frame."""
-    from studies.paper.power_field import NUM_WRITTEN
+    from mmweaver.models.power_field import NUM_WRITTEN
 
     assert 21 * NUM_WRITTEN < 10_018

@@ -1,4 +1,4 @@
-"""The paper's loss: 0.5 complex SSIM, 0.3 squared error, 0.2 perceptual, on patches of range-Doppler maps.
+"""The paper's loss of a hypernetwork of target signal: 0.5 complex SSIM, 0.3 squared error, 0.2 perceptual, on patches of range-Doppler maps.
 
 Reference: paper, "Model Training". The perceptual part is the absolute difference of features of the activity network.
 """
@@ -8,18 +8,25 @@ import torch
 from torch import Tensor
 
 from mmweaver.models.activity_network import ActivityNetwork
-from studies.scores.map_similarity import K1, K2, WINDOW_RADIUS, WINDOW_SIGMA
 
 SHARE_CSSIM, SHARE_MSE, SHARE_PERCEPTUAL = 0.5, 0.3, 0.2
+WINDOW_SIGMA, WINDOW_RADIUS, K1, K2 = 1.5, 5, 0.01, 0.03  # of SSIM (Wang et al., 2004)
 
 
-def paper_loss(
+def signal_loss(
     made: Tensor, truth: Tensor, span: Tensor, perceiver: ActivityNetwork, unit_sqrt_mw: float
 ) -> dict[str, Tensor]:
     """Terms of the loss, weighted.
 
-    Complex patches (sequence, frame, range, doppler, antenna) in the unit of the network; `span` (sequence,) is the
-    data range of each sequence as in the metric cSSIM; `unit_sqrt_mw` is the value of 1.0 in sqrt(mW).
+    Args:
+        made: Complex patches (sequence, frame, range, doppler, antenna) in the unit of the network.
+        truth: Ground truth, likewise.
+        span: Data range of each sequence (sequence,), largest minus smallest of all I and Q.
+        perceiver: Network whose convolutional features are compared.
+        unit_sqrt_mw: Value of the network's 1.0 in sqrt(mW).
+
+    Returns:
+        Terms cssim, mse and perceptual, whose sum is minimised.
     """
     similarity = torch.stack([_ssim(part(made), part(truth), span).mean() for part in (torch.real, torch.imag)]).mean()
     squared = (made - truth).abs().square().mean() / 2
@@ -41,7 +48,7 @@ def perceived(network: ActivityNetwork, values: Tensor) -> list[Tensor]:
 
 
 def _ssim(made: Tensor, truth: Tensor, span: Tensor) -> Tensor:
-    """SSIM at each cell of (sequence, frame, range, doppler, antenna); as metrics.ssim, differentiable."""
+    """SSIM at each cell of (sequence, frame, range, doppler, antenna); differentiable."""
     p, t = made.movedim(-1, 2), truth.movedim(-1, 2)
     c1, c2 = ((k * span)[:, None, None, None, None].square() for k in (K1, K2))
     mean_p, mean_t = _smoothed(p), _smoothed(t)

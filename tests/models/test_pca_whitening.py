@@ -2,7 +2,7 @@
 
 import torch
 
-from studies.paper.pca_whitening import PcaWhitening
+from mmweaver.models.power_field import PcaWhitening
 
 
 def _codes(samples: int) -> torch.Tensor:

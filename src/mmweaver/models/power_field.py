@@ -18,6 +18,8 @@ CODE, RANK = 64, 16  # numbers that modulate a layer, and that compose the secon
 NUM_WRITTEN = LAYERS * CODE + RANK  # by the hypernetwork for each field
 FAINTEST_LOG = -9.0  # of a natural logarithm of square metres: where an untrained field stands
 
+MIN_SPREAD = 1e-3  # of the largest: directions that differ less are left out
+
 
 def octaves(values: Tensor, count: int) -> Tensor:
     """Coordinates (...) in [-1, 1] as themselves and sines and cosines of `count` octaves from half a turn on."""
@@ -80,3 +82,32 @@ class FieldWriter(nn.Module):
 
     def forward(self, code: Tensor) -> Tensor:
         return self.head(self.trunk(code))
+
+
+class PcaWhitening(nn.Module):
+    """Codes (..., size) -> their first `count` principal components (..., count), of unit spread over samples.
+
+    An encoder's codes differ little from each other next to their mean, and nearly all of that in one or two
+    directions: a network that reads them as they are writes the same for all. Mean and directions are measured once, by `measure`, and not trained; until then the first values are passed on.
+    """
+
+    mean: Tensor
+    directions: Tensor
+
+    def __init__(self, size: int, count: int) -> None:
+        super().__init__()
+        self.register_buffer("mean", torch.zeros(size))
+        self.register_buffer("directions", torch.eye(size, count))
+
+    def measure(self, codes: Tensor) -> None:
+        """Takes mean and directions from sample codes (sample, size); directions that they do not show become zero."""
+        mean = codes.double().mean(0)
+        _, length, axes = torch.linalg.svd(codes.double() - mean, full_matrices=False)
+        spread = length / max(len(codes) - 1, 1) ** 0.5
+        count = min(self.directions.shape[1], int((spread > MIN_SPREAD * spread[0]).sum()))
+        self.mean.copy_(mean)
+        self.directions.zero_()
+        self.directions[:, :count] = (axes[:count].T / spread[:count]).to(self.directions.dtype)
+
+    def forward(self, codes: Tensor) -> Tensor:
+        return (codes - self.mean) @ self.directions

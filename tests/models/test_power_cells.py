@@ -4,7 +4,7 @@ import numpy as np
 import torch
 
 from mmweaver.core.presets import AWR1843
-from studies.paper.power_cells import CellSizes
+from mmweaver.models.power_cells import CellSizes
 
 
 def test_a_place_has_one_number_whoever_passes_there():

@@ -1,4 +1,4 @@
-"""The paper's idea with a target that can be learnt: a hypernetwork that writes fields of log power.
+"""The paper's hypernetwork with a target that can be learned: fields of log power.
 
     picture --EnvironmentEncoder--> z_env --> whitened --+--> 272 numbers --> field of the room over (r, azimuth,
                                                          |                    elevation)
@@ -22,12 +22,7 @@ from torch import Tensor, nn
 from mmweaver.core.pinhole import pixel_coordinates
 from mmweaver.models.environment_encoder import Z_ENV, EnvironmentEncoder
 from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
-from mmweaver.models.precision import full_precision
-from mmweaver.models.scatterer_network import ScattererNetwork
-from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.propagation.mean_scatterers import MeanEchoes
-from studies.paper.pca_whitening import PcaWhitening
-from studies.paper.power_anchors import (
+from mmweaver.models.power_anchors import (
     BODY_VALUES,
     HEADS,
     SURFACE_VALUES,
@@ -38,10 +33,13 @@ from studies.paper.power_anchors import (
     surface_values,
     surface_volume,
 )
-from studies.paper.power_cells import REACH, WIDEST, CellSizes
-from studies.paper.power_field import FieldWriter, PowerField, octave_size, octaves
+from mmweaver.models.power_cells import REACH, WIDEST, CellSizes
+from mmweaver.models.power_field import FieldWriter, PcaWhitening, PowerField, octave_size, octaves
+from mmweaver.models.precision import full_precision
+from mmweaver.models.scatterer_network import ScattererNetwork
+from mmweaver.models.scene_tensors import SceneTensors
+from mmweaver.propagation.mean_scatterers import MeanEchoes
 
-RECIPE = "paper_power"
 ROOM_OCTAVES, PERSON_OCTAVES = (7, 6, 4, 4), (6, 6, 4, 4)
 SURFACE_FEATURES, PERSON_FEATURES = 4, 2
 ENV_PARTS, POSE_PARTS = 4, 32  # principal components of the codes that the hypernetwork reads
