@@ -52,7 +52,7 @@ def stop_at_one(progress: Progress) -> None:
         raise StoppedError
 
 
-@pytest.mark.slow  # test_network_training.py interrupts the same loop; test_one_step_of_target_signal trains this network once
+@pytest.mark.slow  # test_network_training.py interrupts the same loop
 def test_it_goes_on_where_it_stopped(tiny_geometry: Path, features: Path, tmp_path: Path):
     options = {"features": features, "save_every_s": 0.0}
     whole = train_hypernetwork(tiny_geometry, tmp_path / "whole", RECIPE, **options)

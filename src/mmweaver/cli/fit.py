@@ -81,7 +81,8 @@ def run(asked: Options) -> int:
     }  # fmt: skip
     text = (
         f"wrote {asked.out}: {field.num_values:,} values for {cube.values.size * 2:,}, error"
-        f" {errors['error_db']:.1f} dB ({errors['error_active_db']:.1f} dB where there is signal), in {seconds:.0f} s; and {picture}"
+        f" {errors['error_db']:.1f} dB ({errors['error_active_db']:.1f} dB where there is signal), in {seconds:.0f} s;"
+        f" and {picture}"
     )
     return asked.report(summary, text)
 

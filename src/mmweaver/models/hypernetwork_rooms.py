@@ -93,9 +93,8 @@ class SignalRoom:
         if len(motions) != 1:
             raise InputError(f"a hypernetwork of target signal knows one person, not {len(motions)}; take target power")
         own = motions[0]
-        joints_m, velocity_mps = (
-            part[own.num_segments // 2 :: own.num_segments] for part in (own.joints_m, own.velocity_mps)
-        )
+        middle = slice(own.num_segments // 2, None, own.num_segments)
+        joints_m, velocity_mps = own.joints_m[middle], own.velocity_mps[middle]
         field = self.network.field(self.image, self.config, joints_m, velocity_mps)
         shown = slice(own.num_before, None)
         grid = CubeGrid.of(self.config, len(joints_m) - own.num_before, first_frame)

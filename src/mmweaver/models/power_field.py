@@ -88,7 +88,8 @@ class PcaWhitening(nn.Module):
     """Codes (..., size) -> their first `count` principal components (..., count), of unit spread over samples.
 
     An encoder's codes differ little from each other next to their mean, and nearly all of that in one or two
-    directions: a network that reads them as they are writes the same for all. Mean and directions are measured once, by `measure`, and not trained; until then the first values are passed on.
+    directions: a network that reads them as they are writes the same for all. Mean and directions are measured once,
+    by `measure`, and not trained; until then the first values are passed on.
     """
 
     mean: Tensor

@@ -58,7 +58,8 @@ in, fields of radar cross section out, implicit neural representations that a hy
 any radar; each cell becomes a scatterer of sampled phase. Recipe weaver is nearer to the ground truth.
 
     mmweaver generate --demo --weights . --out walk/""",
-        limits="""- Read together with photo and joints, from which its coordinates are counted; radars at the camera alone.
+        limits="""- Read together with photo and joints, from which its coordinates are counted; radars at the
+  camera alone.
 - The person's reflections in walls are not there.
 - Details finer than 5 cm, 0.28 m/s and an eighth of a cosine are smooth, whatever radar reads them.
 - One radar ({radar}); others read the same fields and have not been evaluated.""",

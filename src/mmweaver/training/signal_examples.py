@@ -1,6 +1,6 @@
-"""Batches for a hypernetwork of target signal: photos, motions, and patches of cubes that favour ranges with human activity.
+"""Batches for a hypernetwork of target signal: photos, motions, and patches that favour ranges with activity.
 
-The paper samples 16,384 of the coordinates a step. Its complex SSIM and its perceptual loss compare neighbours, so
+The paper samples 16,384 of the coordinates per step. Its complex SSIM and its perceptual loss compare neighbours, so
 whole patches are sampled here: 2 frames of 21 ranges, all 32 Doppler bins and all 12 antennas, 16,128 coordinates of a
 sequence. Half of them lie around a range in which something moves, half anywhere.
 """

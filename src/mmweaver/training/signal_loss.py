@@ -1,4 +1,4 @@
-"""The paper's loss of a hypernetwork of target signal: 0.5 complex SSIM, 0.3 squared error, 0.2 perceptual, on patches of range-Doppler maps.
+"""The paper's loss: 0.5 complex SSIM, 0.3 squared error, 0.2 perceptual, on patches of range-Doppler maps.
 
 Reference: paper, "Model Training". The perceptual part is the absolute difference of features of the activity network.
 """
