@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.compression.active_mask import active_mask
+from mmweaver.compression.quantised_cells import active_mask
 from mmweaver.compression.signal_field import SignalField, finer_grid
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CubeGrid, RadarCube

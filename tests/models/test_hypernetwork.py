@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 import torch
+from mmweaver.core.presets import AWR1843
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.inr import ModulatedINR
 from mmweaver.models.hypernetwork import HyperNetwork, motion_input, unit_sqrt_mw
 from mmweaver.models.scene_tensors import SceneTensors
+from mmweaver.scene.photo_files import sample_photo
 from mmweaver.scene.reconstruction import reconstruct
-from mmweaver.scene.sample_photo import sample_photo
 
 
 def _count(module: torch.nn.Module) -> int:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mmweaver.compression.active_mask import active_mask
+from mmweaver.compression.quantised_cells import active_mask
 from mmweaver.core.records import RadarCube
 from mmweaver.signal.spectra import range_doppler_power
 from mmweaver.viz.theme import colour_bar, label_axes, page

@@ -13,7 +13,7 @@ import torch
 from torch import Tensor
 from torch.func import functional_call, stack_module_state, vmap
 
-from mmweaver.compression.active_mask import active_mask
+from mmweaver.compression.quantised_cells import active_mask
 from mmweaver.compression.scatterer_field import ScattererField
 from mmweaver.compression.scatterers.fitting import FitRecipe
 from mmweaver.compression.signal_field import SignalField

@@ -38,7 +38,7 @@ from mmweaver.models.power_field import FieldWriter, PcaWhitening, PowerField, o
 from mmweaver.models.precision import full_precision
 from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.propagation.mean_scatterers import MeanEchoes
+from mmweaver.propagation.mean_power import MeanEchoes
 
 ROOM_OCTAVES, PERSON_OCTAVES = (7, 6, 4, 4), (6, 6, 4, 4)
 SURFACE_FEATURES, PERSON_FEATURES = 4, 2

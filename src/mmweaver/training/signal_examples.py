@@ -13,7 +13,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from mmweaver.compression.active_mask import active_mask
+from mmweaver.compression.quantised_cells import active_mask
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import RadarCube

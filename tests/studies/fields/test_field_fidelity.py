@@ -3,7 +3,7 @@ from dataclasses import replace
 
 import pytest
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import CubeGrid
 from mmweaver.inr import PAPER, InrField, ModulatedINR
 from studies.fields import field_fidelity
