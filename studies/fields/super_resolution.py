@@ -27,7 +27,7 @@ import numpy as np
 
 from mmweaver.compression.scatterer_field import ScattererField
 from mmweaver.compression.scatterers.fitting import FitRecipe as ScattererRecipe
-from mmweaver.compression.signal_field import SignalField, centred, centring_phasor, finer_grid, sampled_grid
+from mmweaver.compression.signal_field import SignalField, finer_grid, sampled_grid
 from mmweaver.core.boards import AWR1843
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube
@@ -37,6 +37,8 @@ from mmweaver.signal.cube import adc_from_cube, radar_cube
 from studies.fields.field_fidelity import PAPER_VALUES
 from studies.fields.field_signals import pose_of, sample_scene, simulator_of, without_room
 from studies.fields.finer_radar import (
+    centred,
+    centring_phasor,
     interpolated,
     middle_delay_s,
     more_antennas,
@@ -89,7 +91,7 @@ def _lines(cube: RadarCube, is_centred: bool) -> Sampler:
 
 def field_method(name: str, settings: dict[str, Any], make: Callable[[RadarCube], SignalField]) -> UpsamplingMethod:
     """Any field as a method of this study."""
-    return UpsamplingMethod(name=name, make=lambda cube: make(cube).on_grid, settings=settings)
+    return UpsamplingMethod(name=name, make=lambda cube: make(cube).values_on, settings=settings)
 
 
 def methods(inr_names: tuple[str, ...]) -> list[UpsamplingMethod]:
@@ -148,7 +150,7 @@ def between_bins(sampler: Sampler, cube: RadarCube, adc: AdcCube, factor: float)
 
 def sampled_places(sampler: Sampler, cube: RadarCube, adc: AdcCube, radius: int) -> Row:
     """Errors at ranges and velocities sampled within the paper's sampling radius, against the spectrum there."""
-    grid = replace(sampled_grid(cube.grid, radius, seed=0), antenna_position_m=cube.grid.antenna_position_m)
+    grid = replace(sampled_grid(cube.grid, radius / 8, seed=0), antenna_position_m=cube.grid.antenna_position_m)
     truth = replace(cube, values=spectrum_on(adc, grid), grid=grid)
     return _row(
         "sampled_places", float(radius), {"nmse_db": _entry("nmse_db", sampler(grid), truth, "sampled positions")}

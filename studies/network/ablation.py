@@ -302,6 +302,7 @@ def _evaluator(
             return trained(variant, material, runs / slug(shared), recipe)
         file = trained_before[shared]
         network, _ = load_hypernetwork(file) if variant.power else load_weights(file)
+        assert isinstance(network, ScattererNetwork), "weights of target power"
         return NetworkLearner(network, material.cases[0].room.config)
 
     @cache

@@ -47,7 +47,7 @@ Sampler = Callable[[CubeGrid], np.ndarray]
 
 def _scatterers(cube: RadarCube) -> Sampler:
     recipe = FitRecipe(num_points=PAPER_VALUES, num_values=PAPER_VALUES, with_static=False)
-    return ScattererField.fit(cube, recipe).on_grid
+    return ScattererField.fit(cube, recipe).values_on
 
 
 SAMPLERS: dict[str, Callable[[RadarCube], Sampler]] = {
@@ -59,7 +59,7 @@ SAMPLERS: dict[str, Callable[[RadarCube], Sampler]] = {
 
 def at_radius(cube: RadarCube, sampler: Sampler, radius: int, seed: int) -> RadarCube:
     """A copy sampled up to `radius` eighths of a bin away in range and Doppler, on the bins of the original."""
-    moved = replace(sampled_grid(cube.grid, radius, seed), antenna_position_m=cube.grid.antenna_position_m)
+    moved = replace(sampled_grid(cube.grid, radius / 8, seed), antenna_position_m=cube.grid.antenna_position_m)
     return replace(cube, values=np.asarray(sampler(moved), np.complex64))
 
 

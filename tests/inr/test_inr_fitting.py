@@ -7,7 +7,7 @@ from mmweaver.compression.quantised_cells import active_mask
 from mmweaver.compression.signal_field import SignalField, finer_grid
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CubeGrid, RadarCube
-from mmweaver.inr import FIELDS, PAPER, FitOptions, InrField, SeparableINR, fit, fit_many, load
+from mmweaver.inr import FIELDS, PAPER, FitOptions, InrField, ModulatedINR, SeparableINR, fit, fit_many, load
 from mmweaver.inr.fitting import _Sampler
 from tests.compression.echoes import SMALL as ECHOES
 from tests.compression.echoes import crowd, direction_of, error_db, exact_point
@@ -52,7 +52,7 @@ def test_between_bins_it_is_what_the_radar_would_measure():
     one = RadarCube(values=values, grid=CubeGrid.of(ECHOES, 1), config=ECHOES, scale=1.0)
     field = fit(one, num_values=200, options=FitOptions(steps=400))
     half = ECHOES.range_resolution_m / 2
-    ours = field.on_grid(replace(one.grid, range_m=one.grid.range_m + half))[0]
+    ours = field.values_on(replace(one.grid, range_m=one.grid.range_m + half))[0]
     moved = exact_point(ECHOES, 1.4 - half, 0.5, direction_of(0.2, 0.1))
     assert error_db(np.abs(ours), np.abs(moved)) < -20
 
@@ -70,15 +70,16 @@ def test_layers_learn_what_the_papers_recipe_does_not(cube: RadarCube):
 
 def test_the_papers_counts_come_out_of_a_fit():
     """20 frames and 10,018 values: 4,898 shared and 5,120 of the frames."""
-    field = fit(point_cube(num_frames=20), options=replace(PAPER, steps=1, points=400))
+    (field,) = fit_many([point_cube(num_frames=20)], options=replace(PAPER, steps=1, points=400))
     assert field.num_values == 10_018
+    assert isinstance(field.network, ModulatedINR)
     assert field.network.theta.numel() == 4_898
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_points_and_grids_agree(fields: dict[str, SignalField], name: str):
     field = fields[name]
-    whole = field.on_grid(replace(field.grid))
+    whole = field.values_on(replace(field.grid))
     index = np.stack([np.random.default_rng(0).integers(0, size, 200) for size in whole.shape], axis=1)
     assert error_db(field.sample(index.astype(float)), whole[tuple(index.T)]) < -90
 
@@ -86,7 +87,7 @@ def test_points_and_grids_agree(fields: dict[str, SignalField], name: str):
 @pytest.mark.parametrize("name", NAMES)
 def test_finer_grids_contain_the_native_cells(fields: dict[str, SignalField], name: str):
     field = fields[name]
-    finer = field.on_grid(finer_grid(field.grid, n_r=2.0, n_d=2.0, n_a=2.0))
+    finer = field.values_on(finer_grid(field.grid, n_r=2.0, n_d=2.0, n_a=2.0))
     assert error_db(finer[:, ::2, ::2, ::2], field.cube().values) < -60
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 import torch
-from mmweaver.core.presets import AWR1843
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
 from mmweaver.inr import ModulatedINR
 from mmweaver.models.hypernetwork import HyperNetwork, motion_input, unit_sqrt_mw

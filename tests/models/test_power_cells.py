@@ -2,8 +2,8 @@
 
 import numpy as np
 import torch
-from mmweaver.core.presets import AWR1843
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.models.power_cells import CellSizes
 
 

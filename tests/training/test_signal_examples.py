@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from mmweaver.core.presets import AWR1843
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.models.hypernetwork import unit_sqrt_mw
 from mmweaver.training.signal_examples import SignalRoomExamples, sample_signal_batch, signal_rooms
 

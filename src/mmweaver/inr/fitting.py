@@ -4,9 +4,8 @@ Reference: paper, "Model Training" (single signal: 500 epochs, Adam, 1e-4; 16,38
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 import torch
@@ -15,7 +14,7 @@ from torch.func import functional_call, stack_module_state, vmap
 
 from mmweaver.compression.quantised_cells import active_mask
 from mmweaver.compression.scatterer_field import ScattererField
-from mmweaver.compression.scatterers.fitting import FitRecipe
+from mmweaver.compression.scatterers.fitting import FitRecipe, Progress
 from mmweaver.compression.signal_field import SignalField
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
@@ -31,7 +30,6 @@ NUM_VALUES = 10_018  # the paper's: 4,898 shared and 5,120 of 20 frames
 STAGES, GROWING = 8, 0.6  # in which terms are placed, and their share of the steps
 REPORTED_EVERY = 10  # steps
 RMS_OF_ONE = 3.0  # a network's 1.0 is so many times the rms of I and Q
-Progress = Callable[[int, int, float], object]  # step, steps, error in dB
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,7 +90,7 @@ def fit(
     if field == "scatterers":
         _check(cube)
         recipe = FitRecipe(num_points=num_values, num_values=num_values, with_static=len(cube.values) > 1)
-        return ScattererField.fit(cube, recipe)
+        return ScattererField.fit(cube, recipe, progress)
     return fit_many([cube], field, num_values=num_values, options=options, progress=progress)[0]
 
 
@@ -143,12 +141,16 @@ def layers_network(field: str, shape: tuple[int, ...], num_values: int, options:
     """
     cells, share = shape if field == "base" else shape[1:], options.encoded_share
     encoding = PositionalEncoding(len(cells)) if share is None else PositionalEncoding.limited(cells, share)
-    make = BaseINR if field == "base" else partial(ModulatedINR, shape[0])
-    more = {"encoding": encoding, "activation": options.activation}
+
+    def make(width: int) -> BaseINR:
+        if field == "base":
+            return BaseINR(encoding=encoding, activation=options.activation, width=width)
+        return ModulatedINR(shape[0], encoding=encoding, activation=options.activation, width=width)
+
     width = 1
-    while _size(make(width=width + 1, **more)) <= num_values:
+    while _size(make(width + 1)) <= num_values:
         width += 1
-    network = make(width=width, **more)
+    network = make(width)
     if _size(network) > num_values:
         raise InputError(f"{num_values} values are too few for {shape[0]} frames; give at least {_size(network)}")
     return network
@@ -176,7 +178,7 @@ class _Fit:
         self._stack()
 
     def _stack(self) -> None:
-        parameters, _ = stack_module_state(self.networks)  # ty: ignore[invalid-argument-type]
+        parameters, _ = stack_module_state(self.networks)
         self.parameters = {name: value.detach().requires_grad_() for name, value in parameters.items()}
 
     def _unstack(self) -> None:
@@ -232,6 +234,7 @@ class _Fit:
                 rest = torch.view_as_complex((truth - self._call(self.axes)).contiguous())
             self._unstack()
             for network, own in zip(self.networks, rest, strict=True):
+                assert isinstance(network, SeparableINR), "the kind of network that grows"
                 network.grow(own, self.axes, *(round(count * stage / STAGES) for count in self.ranks))
             self._stack()
             adam = self._adam(rate)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import torch
@@ -62,7 +63,7 @@ class InrField(SignalField):
         if isinstance(self.network, SeparableINR):
             iq = self.network(axes, time, is_grid=False)[0]
         else:
-            x = torch.stack(self._normalised(at.T), dim=-1)
+            x = torch.stack(self._normalised(list(at.T)), dim=-1)
             if isinstance(self.network, ModulatedINR):
                 gamma, beta = self.network.modulation(time)
                 iq = self.network(x[None, :, 1:], gamma=gamma, beta=beta)[0]
@@ -70,8 +71,8 @@ class InrField(SignalField):
                 iq = self.network(x)
         return self._values(iq, axes, is_grid=False)
 
-    def on_grid(self, grid: CubeGrid) -> CubeValues:
-        """Values at the cells of any grid of this radar; see `SignalField.on_grid`."""
+    def values_on(self, grid: CubeGrid) -> CubeValues:
+        """Values at the cells of any grid of this radar; see `SignalField.values_on`."""
         at = coordinates_on(self.grid, grid)
         axes, time = self._response.axes(grid), torch.from_numpy(at[0]).float()
         if isinstance(self.network, SeparableINR):
@@ -99,7 +100,8 @@ class InrField(SignalField):
         Raises:
             InputError: If it cannot be written.
         """
-        network, about = self.network, {"amplitude": self.amplitude, "is_centred": self.is_centred}
+        about: dict[str, Any] = {"amplitude": self.amplitude, "is_centred": self.is_centred}
+        network = self.network
         if isinstance(network, BaseINR):
             about |= {"sizes": network.sizes, "activation": network.activation}
             about |= {"frequencies": network.encoding.frequencies}

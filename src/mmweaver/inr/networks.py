@@ -109,7 +109,7 @@ class BaseINR(nn.Module):
         """
         super().__init__()
         self.encoding, self.activation = encoding or PositionalEncoding(num_axes), activation
-        self.sizes = (sum(self.encoding.sizes), *[width] * depth, 2)
+        self.sizes: tuple[int, ...] = (sum(self.encoding.sizes), *[width] * depth, 2)
         self.theta = nn.Parameter(torch.cat([self._fresh(at) for at in range(depth + 1)]))
 
     def _fresh(self, at: int) -> Tensor:

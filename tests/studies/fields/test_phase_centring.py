@@ -3,11 +3,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.compression.signal_field import centred, centring_phasor, centring_phasor_at
 from mmweaver.core.boards import AWR1843
-from mmweaver.core.records import AdcCube, CubeGrid
+from mmweaver.core.records import AdcCube
 from mmweaver.signal.cube import radar_cube
-from tests.cubes import SMALL, point_adc, point_cube
+from studies.fields.finer_radar import centred, centring_phasor
+from tests.cubes import point_adc, point_cube
 
 
 def turn_per_bin_rad(values: np.ndarray, axis: int) -> float:
@@ -57,10 +57,3 @@ def test_tdm_compensation_leaves_a_small_slope_across_the_doppler_lobe():
         turn = 2 * np.pi * config.tx_delay_s[tx] / config.loop_period_s / 32
         assert np.angle(right * np.conj(left)) == pytest.approx(-turn, abs=1e-3)
         assert turn < np.radians(8)
-
-
-def test_phasors_at_points_equal_those_of_the_grid():
-    grid = CubeGrid.of(SMALL, 2)
-    turn = centring_phasor(SMALL, grid)
-    coordinates = np.array([[0.0, 3.0, 5.0, 1.0], [1.0, 31.0, 0.0, 2.0]])
-    assert np.allclose(centring_phasor_at(SMALL, grid, coordinates), [turn[3, 5], turn[31, 0]], atol=1e-5)
