@@ -67,7 +67,7 @@ def test_a_field_is_sampled_more_finely(field: Path, tmp_path: Path):
         assert held["cube"].shape == (3, 64, 32, 12)
         assert np.allclose(held["range_m"][::2], SMALL.range_m)
         native = load(field).cube().values
-        assert error_db(held["cube"][:, ::2, ::2], native) < -60
+        assert np.allclose(held["cube"][:, ::2, ::2], native, atol=1e-4 * np.abs(native).max())
 
 
 def test_jitter_samples_within_its_radius(field: Path, tmp_path: Path):

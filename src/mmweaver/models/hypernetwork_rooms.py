@@ -18,17 +18,13 @@ from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.power_cells import CellSizes
 from mmweaver.models.power_network import CellEchoes, PowerEncoding, PowerNetwork
 from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.models.weights import WeightsCard, load_into, read_card
+from mmweaver.models.weights import SIGNAL, WeightsCard, load_into, read_card
 from mmweaver.propagation.mean_power import MeanEchoes
 from mmweaver.propagation.paths import Paths
 from mmweaver.propagation.radar_equation import carrier, points_of
 from mmweaver.propagation.speckle import place_of, radial_scatterers
 from mmweaver.signal.cube import adc_from_cube
 from mmweaver.signal.point_response import PointResponse
-
-SIGNAL, POWER = "signal", "power"  # targets
-RECIPES = {"paper": SIGNAL, "paper_power": POWER}  # recipes of weights written before recipe `hypernetwork`
-RECIPE = "hypernetwork"
 
 
 def load_hypernetwork(file: Path) -> tuple[HyperNetwork | PowerNetwork, WeightsCard]:
@@ -38,11 +34,10 @@ def load_hypernetwork(file: Path) -> tuple[HyperNetwork | PowerNetwork, WeightsC
         InputError: For any other file.
     """
     card = read_card(file)
-    target = RECIPES.get(card.recipe, card.settings.get("target") if card.recipe == RECIPE else None)
-    if target not in RECIPES.values():
+    if card.target is None:
         raise InputError(f"{file} holds weights of recipe {card.recipe!r}; give those of: mmweaver train hypernetwork")
     is_anchored = bool(card.settings.get("is_anchored", True))
-    network = HyperNetwork() if target == SIGNAL else PowerNetwork(is_anchored=is_anchored)
+    network = HyperNetwork() if card.target == SIGNAL else PowerNetwork(is_anchored=is_anchored)
     load_into(network, file)
     return network, card
 
@@ -73,11 +68,16 @@ class SignalRoom:
         network: The hypernetwork.
         scene: The room.
         config: The radar.
+
+    Raises:
+        InputError: For a radar elsewhere than at the camera.
     """
 
     background = None
 
     def __init__(self, network: HyperNetwork, scene: Scene, config: RadarConfig) -> None:
+        if not scene.radar_pose.is_at_camera:
+            raise InputError("a hypernetwork of target signal knows radars at the camera alone; take target power")
         self.network, self.config = network.eval(), config
         self.image = SceneTensors.of(scene, config).image
 

@@ -18,11 +18,10 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.inr.networks import ModulatedINR
 from mmweaver.models.activity_network import ActivityNetwork, load_activity
 from mmweaver.models.hypernetwork import HyperNetwork, unit_sqrt_mw
-from mmweaver.models.hypernetwork_rooms import POWER, RECIPE, SIGNAL
 from mmweaver.models.power_network import PowerNetwork
 from mmweaver.models.precision import exactly
 from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.models.weights import load_weights, shipped_weights
+from mmweaver.models.weights import POWER, SIGNAL, load_weights, shipped_weights
 from mmweaver.propagation.mean_power import PowerMaps
 from mmweaver.training.device import ComputeDevice
 from mmweaver.training.model_card import Figures, Page
@@ -71,7 +70,7 @@ any radar; each cell becomes a scatterer of sampled phase. Recipe weaver is near
 class HypernetworkRecipe(LoopRecipe):
     """Hyperparameters of recipe `hypernetwork`; `for_target` gives those of a target."""
 
-    name: str = RECIPE
+    name: str = "hypernetwork"
     target: Literal["signal", "power"] = POWER
     steps: int = 3000
     batch_size: int = 3  # sequences, each of a different room
