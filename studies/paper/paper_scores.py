@@ -18,9 +18,12 @@ import torch
 
 from mmweaver.core.records import RadarCube
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
+from mmweaver.models.hypernetwork import HyperNetwork
 from mmweaver.models.hypernetwork_rooms import load_hypernetwork
+from mmweaver.models.scene_tensors import SceneTensors
+from mmweaver.scene.reconstruction import reconstruct
 from studies.manifest import StudyRun
-from studies.network.learned_scores import Case, cases_of, energy_db, interval, paper_method
+from studies.network.learned_scores import Case, cases_of, energy_db, interval
 from studies.network.room_cache import RoomCache, digest
 from studies.result_rows import complete_rows, dataset_of
 from studies.scores.scorecard import METRICS, scorecard
@@ -31,6 +34,18 @@ PAPER, LOG = "paper", "log.jsonl"
 
 
 Scores = dict[str, dict[str, float]]  # {row: {column: value}} of one case
+
+
+def paper_method(weights: Path) -> Callable[[Any], RadarCube]:
+    """The cube of a `Case`, from room.photo, room.config and joints."""
+    network, _ = load_hypernetwork(weights)
+    assert isinstance(network, HyperNetwork), "weights of target signal"
+
+    def method(case: Any) -> RadarCube:
+        image = SceneTensors.of(reconstruct(case.room.photo), case.room.config).image
+        return network.field(image, case.room.config, *case.joints).cube()
+
+    return method
 
 
 def scores_of(
