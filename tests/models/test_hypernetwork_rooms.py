@@ -33,7 +33,7 @@ def test_weights_of_target_signal_make_a_signal(tmp_path: Path):
     assert made.cube.values.shape == (3, 64, 32, 12)
     assert made.cube.values.any()
     assert np.array_equal(made.cube.values, again.cube.values)
-    assert any("hypernetwork" in note for note in made.meta["assumptions"])
+    assert any("hypernetwork" in note for note in made.meta["assumed"])
     with pytest.raises(InputError, match="one person"):
         weaver.generate(room, ["a person walks", "a person waves"], frames=3)
 
