@@ -92,8 +92,8 @@ class Options(Printed):
         "sequences per step, over all processes (default 3; target signal 4, activity and pose 16, recordings 2)", "N"
     )
     learning_rate: float | None = option(
-        "peak learning rate of AdamW (default 1e-3; target signal 1e-4, activity and pose 2e-3, recordings 2e-4, without"
-        " joints 5e-3)",
+        "peak learning rate of AdamW (default 1e-3; target signal 1e-4, activity and pose 2e-3, recordings 2e-4,"
+        " without joints 5e-3)",
         "RATE",
     )
     seed: int = option("seed of the initial weights and of the batches", "N", default=0)
