@@ -66,7 +66,7 @@ def _sample_field(asked: Options) -> int:
     if asked.out is None:
         raise InputError(f"where to write the signal of {asked.place}? give --out FILE.npz")
     if asked.finer and asked.jitter is not None:
-        raise InputError("--finer and --jitter are two ways to sample; give one of them")
+        raise InputError("--finer and --jitter are two ways to sample; leave one of them out")
     radar = asked.out.with_name("radar.json")
     check_output_file(asked.out, overwrite=asked.overwrite, inputs=[asked.place])
     field = load(asked.place)

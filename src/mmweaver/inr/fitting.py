@@ -90,7 +90,10 @@ def fit(
     if field == "scatterers":
         _check(cube)
         recipe = FitRecipe(num_points=num_values, num_values=num_values, with_static=len(cube.values) > 1)
-        return ScattererField.fit(cube, recipe, progress)
+        scatterers = ScattererField.fit(cube, recipe, progress)
+        if scatterers.num_values > num_values:
+            raise InputError(f"{num_values} values are too few for this signal; give {scatterers.num_values} or more")
+        return scatterers
     return fit_many([cube], field, num_values=num_values, options=options, progress=progress)[0]
 
 

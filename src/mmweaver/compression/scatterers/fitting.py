@@ -336,7 +336,8 @@ class _Fit:
             return recipe.num_points
         static = static_values(self.active_beams, self.static.size) if recipe.with_static else 0
         gains = 2 * len(self.calibration) if recipe.with_calibration else 0
-        return min(recipe.num_points, (recipe.num_values - static - gains - 1) // values_of_point(self.response))
+        left = recipe.num_values - static - gains - 1
+        return max(0, min(recipe.num_points, left // values_of_point(self.response)))
 
     @property
     def _num_points(self) -> int:
