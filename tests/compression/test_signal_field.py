@@ -59,7 +59,7 @@ def test_one_antenna_is_enough():
 
 def test_sampled_coordinates_stay_within_the_radius():
     for radius in (0, 1, 7):
-        _, range_bin, doppler_bin, antenna = coordinates_on(NATIVE, sampled_grid(NATIVE, radius, seed=0))
+        _, range_bin, doppler_bin, antenna = coordinates_on(NATIVE, sampled_grid(NATIVE, radius / 8, seed=0))
         for at in (range_bin, doppler_bin, antenna):
             offset = at - np.arange(len(at))
             assert offset.min() > -1e-6
@@ -69,9 +69,15 @@ def test_sampled_coordinates_stay_within_the_radius():
             assert (range_bin - np.arange(64)).max() > 0.7
 
 
-def test_the_radius_is_one_of_the_papers():
-    with pytest.raises(InputError, match="0 to 7"):
-        sampled_grid(NATIVE, 8, seed=0)
+def test_a_radius_of_a_whole_cell_is_refused():
+    with pytest.raises(InputError, match="below 1"):
+        sampled_grid(NATIVE, 1.0, seed=0)
+
+
+def test_samples_follow_the_seed():
+    one, again, other = (sampled_grid(NATIVE, 3 / 8, seed=seed).range_m for seed in (0, 0, 1))
+    assert (one == again).all()
+    assert (one != other).any()
 
 
 class Formula(SignalField):
@@ -89,7 +95,15 @@ class Formula(SignalField):
 
 def test_a_grid_equals_its_points(monkeypatch):
     monkeypatch.setattr(signal_field, "CHUNK_POINTS", 1000)  # several chunks, one of them short
-    values = Formula().on_grid(CubeGrid.of(SMALL, 3))
+    values = Formula().values_on(CubeGrid.of(SMALL, 3))
     frame, range_bin, doppler_bin, antenna = np.indices(values.shape)
     assert np.allclose(values, frame + 10 * range_bin + 1j * (doppler_bin - 100 * antenna), atol=1e-2)
     assert values.dtype == np.complex64
+
+
+def test_a_cube_carries_grid_config_and_scale():
+    field = Formula()
+    finer = field.on_grid(n_r=2.0)
+    assert finer.values.shape == finer.grid.shape == (3, 64, 16, 12)
+    assert finer.config is SMALL
+    assert np.allclose(finer.values[:, ::2], field.cube().values, atol=1e-2)
