@@ -56,7 +56,7 @@ def _gaps(files: JoinedFiles, config: RadarConfig, typical: float) -> list[Gap]:
             if packets:
                 size = packets * PACKET_BYTES
                 at = _place(files, config, frame - 1, shift, size)
-                gaps.append(Gap(at=at, num_bytes=size, unsure=loop_bytes))
+                gaps.append(Gap(at=at, num_bytes=size, unsure=2 * loop_bytes))
                 shift += size
                 head = _words(files, frame * frame_bytes - shift, loop_bytes)
         if _likeness(reference, head) >= UNLIKE * typical:
