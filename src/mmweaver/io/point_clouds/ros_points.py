@@ -20,7 +20,11 @@ from mmweaver.io.point_clouds.point_log import LoggedCloud, logged_cloud, point_
 SUFFIXES, FOLDER = (".bag", ".db3", ".mcap"), "metadata.yaml"
 CLOUD, SCAN = "sensor_msgs/msg/PointCloud2", "RadarScan"
 TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}  # of PointField
-VELOCITY, INTENSITY, SNR = ("velocity", "doppler", "v", "radial_speed", "vel"), ("intensity", "power"), ("snr", "snr_db")
+VELOCITY, INTENSITY, SNR = (
+    ("velocity", "doppler", "v", "radial_speed", "vel"),
+    ("intensity", "power"),
+    ("snr", "snr_db"),
+)
 MAX_POINTS = 20_000_000
 BROKEN = "no ROS bag that can be read ({reason}); record it again"
 
@@ -88,7 +92,9 @@ def _cloud(message: Any) -> np.ndarray:
         at, kind = found
         return np.ascontiguousarray(data[:, at : at + np.dtype(kind).itemsize]).view(kind)[:, 0].astype(float)
 
-    table = np.column_stack([column("x"), column("y"), column("z"), column(*VELOCITY), column(*INTENSITY), column(*SNR)])
+    table = np.column_stack(
+        [column("x"), column("y"), column("z"), column(*VELOCITY), column(*INTENSITY), column(*SNR)]
+    )
     return table[np.isfinite(table[:, :3]).all(axis=1)]
 
 

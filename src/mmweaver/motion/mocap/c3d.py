@@ -64,7 +64,9 @@ def read_c3d(path: Path) -> RawMotion:
     try:
         labels, points, rate, unit = _markers(data, path)
     except (struct.error, IndexError, ValueError, KeyError, UnicodeDecodeError) as error:
-        raise InputError(f"{path} is no C3D file that can be read, or it is damaged ({error}); export it again") from None
+        raise InputError(
+            f"{path} is no C3D file that can be read, or it is damaged ({error}); export it again"
+        ) from None
     names, joints = _joints(dict(zip(labels, points.transpose(1, 0, 2), strict=False)), path)
     return RawMotion(
         names=names,
