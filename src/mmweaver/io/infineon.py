@@ -1,7 +1,7 @@
 """Recordings of Infineon's Radar SDK and Fusion GUI: a folder RadarIfxAvian_XX with config.json and radar.npy.
 
-radar.npy holds uint16 of a 12-bit converter, (frame, receiver, chirp, sample), real samples. config.json names the chirp
-under device_config / fmcw_single_shape; older versions of the SDK call its ends lower_frequency_Hz, upper_frequency_Hz.
+radar.npy holds uint16 of a 12-bit converter, (frame, receiver, chirp, sample), real samples. config.json has the chirp
+as device_config / fmcw_single_shape; older versions of the SDK call its ends lower_frequency_Hz, upper_frequency_Hz.
 
 Reference: Infineon Radar Development Kit, ifxJsonConfiguration and recording classes; recordings on GitHub.
 """

@@ -122,13 +122,15 @@ def _hdf5(path: Path, name: str, *, is_matlab: bool) -> np.ndarray:
     need("hdf5", str(path), "h5py")
     import h5py
 
-    with foreign_errors(path, "no HDF5 file that can be read ({reason}); save the array as .npy"):
-        with h5py.File(path, "r") as file:
-            found: Any = file.get(name)
-            if isinstance(found, h5py.Dataset) and found.nbytes > MAX_BYTES:
-                raise InputError(f"{path}: {name} is larger than {MAX_BYTES / 1e9:g} GB; save a part of it as .npy")
-            values = found[()] if isinstance(found, h5py.Dataset) else None
-            known = list(file)
+    with (
+        foreign_errors(path, "no HDF5 file that can be read ({reason}); save the array as .npy"),
+        h5py.File(path) as file,
+    ):
+        found: Any = file.get(name)
+        if isinstance(found, h5py.Dataset) and found.nbytes > MAX_BYTES:
+            raise InputError(f"{path}: {name} is larger than {MAX_BYTES / 1e9:g} GB; save a part of it as .npy")
+        values = found[()] if isinstance(found, h5py.Dataset) else None
+        known = list(file)
     values = _checked(path, name, values, known)
     return values.T if is_matlab else values
 

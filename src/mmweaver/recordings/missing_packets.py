@@ -5,6 +5,7 @@ does not, and one lying a whole number of packets earlier does, these packets ar
 on the frame is shifted is found the same way. Recordings whose loops do not resemble each other give no evidence.
 """
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -36,8 +37,8 @@ def missing_packets(paths: tuple[Path, ...], config: RadarConfig) -> tuple[Gap, 
     num_frames = files.size // frame_bytes
     if num_frames < 3:
         return ()
-    heads = [_words(files, frame * frame_bytes, loop_bytes) for frame in range(num_frames)]
-    successive = np.array([_likeness(one, two) for one, two in zip(heads[:-1], heads[1:], strict=True)])
+    heads = (_words(files, frame * frame_bytes, loop_bytes) for frame in range(num_frames))
+    successive = np.array([_likeness(one, two) for one, two in pairwise(heads)])
     alike = successive[successive >= ALIKE]
     if len(alike) < 0.5 * len(successive):
         return ()
@@ -74,7 +75,7 @@ def _packets_missing(files: JoinedFiles, expected: int, reference: np.ndarray, f
 
 
 def _likeness_of_shifts(files: JoinedFiles, expected: int, reference: np.ndarray) -> np.ndarray:
-    """Likeness of the loop that begins 0, 1, ... packets before a byte; 0 where there is none, or it is a whole loop."""
+    """Likeness of the loop beginning 0, 1, ... packets before a byte; 0 where there is none or it is a whole loop."""
     found, size = np.zeros(MAX_PACKETS + 1), 2 * len(reference)
     first = max(0, expected - MAX_PACKETS * PACKET_BYTES)
     data = files.read(first, expected + size)

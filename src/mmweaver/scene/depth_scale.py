@@ -1,9 +1,9 @@
 """What the counts of a depth picture mean: their unit, and whether they are depths or distances along the ray.
 
 Few files state their unit. It follows from what rooms and cameras are like: a camera stands about 1.2 m above the
-floor, what it shows reaches 1 to 3 m above the floor and some metres away; and from bit patterns (TUM's counts of Kinects
-are multiples of 5, SUN RGB-D's are rotated by three bits). Planes tell depth from distance: the inverse depth of a plane
-is linear in the picture, its inverse distance is not. Formats: table in docs/photos.md.
+floor, what it shows reaches 1 to 3 m above the floor and some metres away; and from bit patterns (TUM's counts of
+Kinects are multiples of 5, SUN RGB-D's are rotated by three bits). Planes tell depth from distance: the inverse depth
+of a plane is linear in the picture, its inverse distance is not. Formats: table in docs/photos.md.
 """
 
 from dataclasses import dataclass

@@ -30,8 +30,8 @@ def markers() -> dict[str, np.ndarray]:
         out = -1.0 if side == "left" else 1.0
         hip = at[f"{side}_hip"]
         middle = (at["left_hip"] + at["right_hip"]) / 2
-        found[f"{letter}ASI"] = middle + [130 * out, 49, 78]
-        found[f"{letter}PSI"] = middle + [50 * out, -120, 78]
+        found[f"{letter}ASI"] = middle + np.array([130 * out, 49, 78])
+        found[f"{letter}PSI"] = middle + np.array([50 * out, -120, 78])
         assert np.abs(hip - middle).max() < 100
         for name, marker in (("knee", "KNE"), ("ankle", "ANK"), ("elbow", "ELB"), ("shoulder", "SHO")):
             found[letter + marker] = at[f"{side}_{name}"] + [20 * out, 0, 0]

@@ -1,7 +1,7 @@
 """C3D: markers of optical motion capture, from Vicon, Qualisys, OptiTrack and others; joints are estimated from them.
 
-A header, parameters in groups (POINT: LABELS, UNITS, RATE, SCALE), then a block per frame with x, y, z and a residual per
-marker, as 16-bit integers times SCALE, or as float32 where SCALE is negative. A negative residual marks a gap.
+A header, parameters in groups (POINT: LABELS, UNITS, RATE, SCALE), then x, y, z and a residual per marker and frame, as
+16-bit integers times SCALE, or as float32 where SCALE is negative. A negative residual marks a gap.
 Joints are means of markers around them (Plug-in Gait, Helen Hayes); the centres of the hips follow from the pelvis.
 
 Reference: C3D.org, The C3D File Format User Guide; Bell et al., J. Biomechanics 23, 1990 (hip joint centre).
@@ -165,6 +165,8 @@ def _joints(markers: dict[str, np.ndarray], path: Path) -> tuple[tuple[str, ...]
     names = tuple(name for name in found if name not in ("left_front", "right_front", "sacrum"))
     if not {"left_hip", "left_knee", "left_ankle", "left_shoulder", "head"} <= set(names):
         few = ", ".join(list(held)[:12])
-        raise InputError(f"{path} has markers {few}{', ...' if len(held) > 12 else ''}; Plug-in Gait's (LASI, LKNE, LANK,"
-                         " LSHO, LFHD, ...) are known")  # fmt: skip
+        raise InputError(
+            f"{path} has markers {few}{', ...' if len(held) > 12 else ''}; Plug-in Gait's (LASI, LKNE, LANK, LSHO,"
+            " LFHD, ...) are known"
+        )
     return names, np.stack([found[name] for name in names], axis=1)

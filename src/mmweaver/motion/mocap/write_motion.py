@@ -132,7 +132,7 @@ def write_amass(path: Path, pose: PoseSequence) -> None:
     rotations = joint_rotations(joints_m, MEAN_OFFSET_M)
     poses = np.zeros((len(joints_m), AMASS_ROTATIONS, 3))
     poses[:, :NUM_JOINTS] = Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_rotvec().reshape(-1, NUM_JOINTS, 3)
-    with open(path, "wb") as file:
+    with path.open("wb") as file:
         np.savez(
             file,
             poses=poses.reshape(len(poses), -1),
