@@ -99,7 +99,7 @@ class BinSamples:
 
     def read(self, first: int, last: int) -> tuple[np.ndarray, np.ndarray]:
         """As in `SentBytes`; runs of zeros are recognised across the ends of what is read."""
-        start, end = max(0, first - PACKET_BYTES), min(self.size, last + PACKET_BYTES)
+        start, end = max(0, (first - PACKET_BYTES) // 2 * 2), min(self.size, last + PACKET_BYTES)
         data, is_received = self._placed(start, end)
         even = len(data) // 2 * 2
         zeros = np.repeat(_long_runs(data[:even].view("<i2") == 0), 2)

@@ -35,7 +35,7 @@ CLEAR = 4.0  # ratio of the likelihoods of the two best readings; below, the use
 POSSIBLE = 2e-3  # likelihood of the best reading relative to a typical room's; below, none fits
 KINECT_BASE_MM, KINECT_INFINITY = 351.3e3, 1092.5  # depth = base / (infinity - disparity); NYU Depth V2's toolbox
 MAX_DISPARITY = 2047
-SMOOTHER = 4.0  # ratio of the steps between neighbours as stored and with bytes swapped
+SMOOTHER = 1.5  # ratio of the steps between neighbours as stored and with bytes swapped; below 0.3 for depth
 WINDOW, MIN_MEASURED, FLAT = 20, 0.8, 0.01  # cells of a window, share of them measured, relative error of a flat one
 RAY_BEND, MIN_WINDOWS = 0.5, 10  # on real and rendered rooms depths give -0.2 to 0, distances 0.9 to 1.3
 
