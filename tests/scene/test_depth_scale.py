@@ -21,7 +21,7 @@ from mmweaver.scene.depth_scale import (
     unit_of_name,
 )
 from mmweaver.scene.photo.camera_file import d455_intrinsics, intrinsics_for, read_camera_file
-from mmweaver.scene.sample_photo import sample_photo
+from mmweaver.scene.photo_files import sample_photo
 
 CASES = Path(__file__).resolve().parents[3] / "shared" / "cases"
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import AdcCube
 from mmweaver.signal.cube import radar_cube
 from mmweaver.signal.lost_chirps import frames_left_out, without_lost_chirps

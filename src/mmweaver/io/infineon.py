@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from mmweaver.core.boards import PRESETS
 from mmweaver.core.errors import InputError, file_named
-from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.safe_files.safe_arrays import read_npy

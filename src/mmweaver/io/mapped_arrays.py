@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
+from mmweaver.core.boards import PRESETS
 from mmweaver.core.errors import InputError
 from mmweaver.core.optional_packages import need
-from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.safe_files.regular_files import check_regular, foreign_errors, open_regular

@@ -12,8 +12,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.safe_pictures import open_picture
 from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.scene.depth_scale import UNITS, is_rotated, rotated_by_three
+from mmweaver.scene.photo.capture_photo import Pose
 from mmweaver.scene.photo.picture_files import read_depth, read_rgb
-from mmweaver.scene.photo.posed_photo import Pose
 from mmweaver.scene.scan_format import ScanFormat, ScanFrame, checked_pose, number_table
 
 MILLIMETRE = UNITS["mm"][0]
@@ -23,7 +23,7 @@ ICL_NUIM = (481.2, 480.0, 319.5, 239.5)
 
 
 def last_number(picture: Path) -> float:
-    """Number of a frame in a file's name: 12 of frame-000012.color.png, 1311868.25 of 1311868.25.png; -1 without one."""
+    """Number of a frame in a file's name: 12 of frame-000012.color.png, 1868.25 of 1868.25.png; -1 without one."""
     found = re.findall(r"\d+(?:\.\d+)?(?=\D*$)", picture.stem)
     return float(found[-1]) if found else -1.0
 
@@ -63,7 +63,9 @@ def _replica(folder: Path, colour: Path) -> ScanFrame:
         depth_m=read_depth(depth, unit_m)[0],
         lens=lens,
         files={"rgb": colour, "depth": depth},
-        notes=() if file is not None else ("No cam_params.json: 6553.5 counts a metre and Replica's camera were taken.",),
+        notes=()
+        if file is not None
+        else ("No cam_params.json: 6553.5 counts a metre and Replica's camera were taken.",),
     )
 
 
@@ -152,7 +154,11 @@ def _sibling(picture: Path, own: str, other: str) -> Path:
 def _same_number(folder: Path, colour: Path) -> Path:
     """The depth picture with the number of a colour picture."""
     number = re.search(r"\d+", colour.stem)
-    found = [] if number is None else [one for one in folder.glob("*.png") if re.match(rf"\D*0*{int(number[0])}\D", one.name)]
+    found = (
+        []
+        if number is None
+        else [one for one in folder.glob("*.png") if re.match(rf"\D*0*{int(number[0])}\D", one.name)]
+    )
     if not found:
         raise InputError(f"{folder} holds no depth for {colour.name}")
     return sorted(found)[0]

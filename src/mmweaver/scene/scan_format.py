@@ -10,7 +10,7 @@ import numpy as np
 from mmweaver.core.safe_files.regular_files import foreign_errors
 from mmweaver.core.safe_files.safe_text import read_text
 from mmweaver.core.shapes import DepthPixels, RgbPixels
-from mmweaver.scene.photo.posed_photo import Pose
+from mmweaver.scene.photo.capture_photo import Pose
 
 
 @dataclass(frozen=True, kw_only=True)

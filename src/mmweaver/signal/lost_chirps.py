@@ -15,6 +15,7 @@ import numpy as np
 from jaxtyping import Bool, Complex
 
 from mmweaver.core.records import AdcCube
+from mmweaver.core.shapes import LostChirps
 from mmweaver.signal.windows import hann
 
 NEAREST = 32  # intact loops that a lost chirp is estimated from
@@ -22,8 +23,6 @@ ABOVE_NOISE = 10.0  # a velocity whose power is this multiple of the frame's med
 LOADING = 1e-3  # relative to the power of the bin; bounds the gain of the estimate
 MIN_WINDOW = 0.05  # below, samples at the ends of a chirp are not amplified further when the window is undone
 MIN_INTACT = 0.5  # share of a transmitter's loops; below, a frame is left out
-
-LostChirps = Bool[np.ndarray, "frame loop slot"]
 
 
 def without_lost_chirps(adc: AdcCube, is_lost: LostChirps) -> AdcCube:
