@@ -17,7 +17,7 @@ from mmweaver.core.records import RadarCube
 from studies.fields.field_signals import RECORDED, SIGNALS, StudySignal
 from studies.manifest import StudyRun
 from studies.paper.single_signal import RECIPES, fit
-from studies.result_rows import complete_rows, in_order, kept_rows
+from studies.result_rows import complete_rows
 from studies.scores.scorecard import scorecard
 from studies.study import Reads
 
@@ -102,17 +102,12 @@ def measure_inr(
     recipe_names: tuple[str, ...],
     signal_names: tuple[str, ...],
     data: Path | None,
-    *,
-    keep: bool = False,
 ) -> list[Path]:
-    """Every recipe on every signal; one file a recipe. With `keep`, rows of other signals stay as they were."""
+    """Every recipe on every signal; one file a recipe."""
     signals = [SIGNALS[name](data) for name in signal_names]
     paths = []
     for name in recipe_names:
         rows = [fidelity_row(signal, recipe_fitter(name)) for signal in signals]
-        if keep:
-            kept = kept_rows(run.out / EXPERIMENT / f"inr_{name}.json", list(signal_names))
-            rows = in_order(rows + kept, list(SIGNALS))
         config = asdict(RECIPES[name])
         paths.append(run.write(EXPERIMENT, f"inr_{name}", config=config, rows=complete_rows(rows)))
     return paths
@@ -125,13 +120,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--recipes", nargs="*", default=["paper", "smooth_short"])
     parser.add_argument("--without-scatterers", action="store_true")
     parser.add_argument("--signals", nargs="*", default=None)
-    parser.add_argument("--keep", action="store_true", help="keep an INR's rows of signals that are not measured now")
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     every = [name for name in SIGNALS if options.data is not None or name not in RECORDED]
     names = tuple(options.signals or every)
     if options.recipes:
-        measure_inr(run, tuple(options.recipes), names, options.data, keep=options.keep)
+        measure_inr(run, tuple(options.recipes), names, options.data)
     if not options.without_scatterers:
         measure_scatterers(run, names, options.data)

@@ -141,7 +141,7 @@ def trained(variant: AblationVariant, material: AblationMaterial, out: Path, rec
 def network_of(variant: AblationVariant) -> ScattererNetwork:
     """The variant's network before training."""
     if variant.power:
-        return initial_power_network(PowerRecipe(is_anchored=variant.power == "anchored"))
+        return initial_power_network(PowerRecipe())
     return AblatedNetwork(variant.without)
 
 

@@ -6,7 +6,7 @@ from mocap_files import walk
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.mocap.joint_arrays import CONTACTS, ROTATIONS, VELOCITIES, joints_from_features
-from studies.motion.humanml3d_features import features_from_joints, y_up
+from tests.motion.humanml3d_features import features_from_joints, y_up
 
 
 def test_joints_come_back():

@@ -6,7 +6,7 @@ import torch
 from motiongpt_files import SENTENCES, TINY, TINY_T5, tiny
 
 from mmweaver.motion.motiongpt.language_model import PUBLISHED_T5, add_motion_tokens, build_t5, sample_codes
-from studies.motion.motiongpt_weights import train_words
+from tests.motion.motiongpt_weights import train_words
 
 # flan-t5-base with 32,100 words and 515 motion tokens.
 PUBLISHED = {

@@ -9,7 +9,7 @@ from motiongpt_files import published, tiny
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.motiongpt.motiongpt import MotionGPT, check_std
-from studies.motion.motiongpt_weights import save_published, save_weights, state_of
+from tests.motion.motiongpt_weights import save_published, save_weights, state_of
 
 
 def test_a_published_checkpoint_loads_and_generates(tmp_path: Path):

@@ -1,10 +1,56 @@
-"""Picture codecs on a 16-bit mosaic of all planes: JPEG 2000 and JPEG XL."""
+"""Compressors of libraries: SPERR on floats, blosc2 on rounded numbers, JPEG 2000 and JPEG XL on a mosaic of planes."""
 
 import numpy as np
 
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
 from studies.baselines.codec_interface import KnobCodec, library, merged, split
+
+
+class Sperr(KnobCodec):
+    """SPERR at a given number of bits a point, on (part, antenna and frame, range, doppler)."""
+
+    name = "sperr"
+    coarse, fine = 1e-3, 16.0
+
+    def at(self, values: CubeValues, knob: float, cube: RadarCube) -> bytes:
+        imagecodecs = library("imagecodecs")
+
+        planes = split(values)
+        return bytes(imagecodecs.sperr_encode(planes.reshape(-1, *planes.shape[2:]), knob, "bpp", numthreads=1))
+
+    def back(self, data: bytes, like: RadarCube) -> np.ndarray:
+        imagecodecs = library("imagecodecs")
+
+        frames, num_range, num_doppler, antennas = like.grid.shape
+        planes = np.asarray(imagecodecs.sperr_decode(data, numthreads=1))
+        return merged(planes.reshape(2 * antennas, frames, num_range, num_doppler))
+
+
+class Blosc2(KnobCodec):
+    """Values rounded to a step, as int16, bit-shuffled and compressed by zstd."""
+
+    name = "blosc2"
+    coarse, fine = 1.0, 1 / 32000
+
+    def at(self, values: CubeValues, knob: float, cube: RadarCube) -> bytes:
+        blosc2 = library("blosc2")
+
+        levels = np.rint(split(values) / knob).astype(np.int16)
+        packed = blosc2.compress2(
+            levels.tobytes(), codec=blosc2.Codec.ZSTD, clevel=9, typesize=2, filters=[blosc2.Filter.BITSHUFFLE],
+            nthreads=1, blocksize=1 << 20,
+        )  # fmt: skip
+        return np.float32(knob).tobytes() + bytes(packed)
+
+    def back(self, data: bytes, like: RadarCube) -> np.ndarray:
+        blosc2 = library("blosc2")
+
+        frames, num_range, num_doppler, antennas = like.grid.shape
+        step = np.frombuffer(data[:4], np.float32)[0]
+        levels = np.frombuffer(blosc2.decompress2(data[4:]), np.int16)
+        return merged(levels.reshape(2 * antennas, frames, num_range, num_doppler) * step)
+
 
 ZERO, SPAN = 32768, 32000
 

@@ -21,7 +21,7 @@ import numpy as np
 
 from mmweaver.compression.mmw_codec import read_cube
 from mmweaver.compression.mmw_container import MmwFile
-from studies.trust.fault_injection import (
+from tests.faults.fault_injection import (
     HIDDEN_COMMITTED,
     Fault,
     Outcome,
@@ -30,7 +30,7 @@ from studies.trust.fault_injection import (
     tree,
     what_a_run_finds,
 )
-from studies.trust.faulted_commands import FaultedCommand
+from tests.faults.faulted_commands import FaultedCommand
 
 NOTHING = "interrupted; nothing was written"
 
