@@ -14,6 +14,7 @@ import pytest
 from mmweaver.core.atomic_files import atomic_file, atomic_files, staged_folder
 from mmweaver.core.checksums import SUMS_FILE, damages, read_sums
 from mmweaver.core.errors import InputError
+from mmweaver.core.output_checks import check_output_file
 from mmweaver.core.staging import COMMITTED, staging_path
 
 
@@ -191,3 +192,51 @@ def test_what_another_host_writes_stays_for_an_hour_after_its_last_change(
     with atomic_file(tmp_path / "a.txt") as temporary:
         temporary.write_text("mine")
     assert other.exists() == is_kept
+
+
+def test_a_link_that_was_named_is_followed(tmp_path: Path):
+    (tmp_path / "real").mkdir()
+    (tmp_path / "out").symlink_to("real")
+    (tmp_path / "file.txt").symlink_to("real/file.txt")
+    check_output_file(tmp_path / "file.txt", overwrite=False)
+    with staged_folder(tmp_path / "out") as stage:
+        (stage / "a.txt").write_text("a")
+    with atomic_file(tmp_path / "file.txt") as temporary:
+        temporary.write_text("b")
+    assert (tmp_path / "real" / "file.txt").read_text() == "b"
+    assert (tmp_path / "out").is_symlink()
+    assert (tmp_path / "file.txt").is_symlink()
+
+
+def test_a_link_that_is_found_is_replaced(tmp_path: Path):
+    (tmp_path / "theirs.txt").write_text("theirs")
+    (tmp_path / "file.txt").symlink_to("theirs.txt")
+    with atomic_file(tmp_path / "file.txt") as temporary:
+        temporary.write_text("mine")
+    assert (tmp_path / "theirs.txt").read_text() == "theirs"
+    assert (tmp_path / "file.txt").read_text() == "mine"
+    assert not (tmp_path / "file.txt").is_symlink()
+
+
+def test_a_file_that_another_command_replaces_leaves_the_checksums(tmp_path: Path):
+    with staged_folder(tmp_path / "out") as stage:
+        (stage / "a.txt").write_text("a")
+        (stage / "b.txt").write_text("b")
+    with atomic_file(tmp_path / "out" / "a.txt") as temporary:
+        temporary.write_text("another")
+    assert set(read_sums(tmp_path / "out") or {}) == {"b.txt"}
+
+
+def test_the_first_of_several_creates(tmp_path: Path):
+    assert create_once(tmp_path / "plan.json", "one") == "one"
+    assert create_once(tmp_path / "plan.json", "two") == "one"
+    assert names(tmp_path) == ["plan.json"]
+    assert written()[-1] == tmp_path / "plan.json"
+
+
+def test_the_longest_name_that_fits_can_be_written(tmp_path: Path):
+    target = tmp_path / ("a" * 251 + ".npz")
+    with atomic_file(target) as temporary:
+        temporary.write_text("")
+        assert temporary.suffix == ".npz"
+    assert target.is_file()

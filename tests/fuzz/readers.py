@@ -38,6 +38,7 @@ from mmweaver.scene.photo.picture_files import read_depth, read_rgb
 from mmweaver.scene.segmentation.class_file import read_class_file
 from tests import captures
 from tests.fuzz import mutators as m
+from tests.fuzz.folder_readers import folder_readers
 from tests.fuzz.harness import Reader, wrong_numbers
 from tests.fuzz.log_readers import log_readers
 from tests.fuzz.mesh_readers import mesh_readers
@@ -65,6 +66,7 @@ def make_readers(folder: Path) -> list[Reader]:
         *_others(folder),
         *set_readers(folder),
         *log_readers(folder, config),
+        *folder_readers(folder),
         *mesh_readers(folder),
     ]
 
@@ -209,7 +211,7 @@ def _recordings(folder: Path, config: Any, adc: AdcCube) -> list[Reader]:
     axes = "frame,loop,tx,rx,sample"
 
     def pcap(rng: random.Random) -> bytes:
-        if rng.random() < 0.5:
+        if rng.random() < 0.5 or isinstance(rng, m.Undamaged):
             return m.mutated_bytes(captures.pcap_of(packets[:40]), rng)
         damaged = list(packets[:40])
         for _ in range(rng.choice((1, 1, 3))):
