@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 pytest.importorskip("starlette", reason="the studio's extra is not installed")
 pytest.importorskip("httpx", reason="httpx, which starlette's test client needs, is not installed")
@@ -434,7 +435,8 @@ def test_live_waits_for_the_page(page: TestClient):
 def test_the_arrays_of_a_room_are_complete(page: TestClient):
     header, arrays = unpack(page.get("/api/room/demo", headers=session(page)).content)
     assert header["planes"]
-    assert arrays["room_points"].shape == arrays["room_colours"].shape
+    assert len(arrays["room_points"]) == len(arrays["room_uv"]) > arrays["room_faces"].max()
+    assert Image.open(BytesIO(arrays["room_photo"].tobytes()), formats=["JPEG"]).size == (640, 480)
 
 
 def test_radar_npz_is_an_archive(page: TestClient, tmp_path: Path):
