@@ -436,7 +436,7 @@ def test_the_arrays_of_a_room_are_complete(page: TestClient):
     header, arrays = unpack(page.get("/api/room/demo", headers=session(page)).content)
     assert header["planes"]
     assert len(arrays["room_points"]) == len(arrays["room_uv"]) > arrays["room_faces"].max()
-    assert Image.open(BytesIO(arrays["room_photo"].tobytes()), formats=["JPEG"]).size == (640, 480)
+    assert Image.open(io.BytesIO(arrays["room_photo"].tobytes()), formats=["JPEG"]).size == (640, 480)
 
 
 def test_radar_npz_is_an_archive(page: TestClient, tmp_path: Path):

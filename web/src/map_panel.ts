@@ -19,6 +19,7 @@ export class MapPanel extends Chart {
   private image: ImageData | null = null;
   private places: { key: string; index: Int32Array; width: number; height: number } | null = null;
   private shown: { key: unknown[]; picture: Picture; value: (row: number, column: number) => number | null; unit: string } | null = null;
+  private isDifference = false;
   private lut = new Uint32Array(256);
 
   /** Shows a picture; `window` are the decibels of the darkest and the brightest colour. Painted only where something changed. */
@@ -41,7 +42,7 @@ export class MapPanel extends Chart {
     const columns = Int32Array.from({ length: own.columns }, (_, c) => cell(a.across[0] + ((c + 0.5) / own.columns) * (a.across[1] - a.across[0]), b.across, other.columns));
     const rows = Int32Array.from({ length: own.rows }, (_, r) => cell(a.up[0] + ((r + 0.5) / own.rows) * (a.up[1] - a.up[0]), b.up, other.rows));
     const value = (r: number, c: number) => (columns[c] < 0 || rows[r] < 0 ? null : dB(b, other.index(rows[r], columns[c])) - dB(a, own.index(r, c)));
-    this.shown = { key, picture: a, unit: "dB", value };
+    this.shown = { key, picture: a, unit: "dB", value }; this.isDifference = true;
     const pixels = this.pixels(a), { index: places } = this.places!, first = a.rows === "first";
     for (let i = 0; i < places.length; i++) {
       if (places[i] < 0) { pixels[i] = 0; continue; }
@@ -58,7 +59,7 @@ export class MapPanel extends Chart {
     const { picture, value } = this.shown, { rows, columns } = grid(picture), column = cell(at.x, picture.across, columns), row = cell(at.y, picture.up, rows);
     return column < 0 || row < 0 ? null : value(row, column);
   }
-  protected valueText(cursor: Cursor): string { const value = this.valueAt(cursor); return value === null ? "" : `${value.toFixed(0)} ${this.shown!.unit}`.replace("-", "−"); }
+  protected valueText(cursor: Cursor): string { const value = this.valueAt(cursor), isOn = this.isFan ? cursor.azimuth !== undefined : this.place(cursor).x !== undefined && this.place(cursor).y !== undefined; return value === null ? (isOn && this.isDifference ? "not shown by B" : "") : `${value.toFixed(0)} ${this.shown!.unit}`.replace("-", "−"); }
   protected step(): [number, number] {
     if (!this.shown) return [0.1, 0.1];
     const { picture: { across, up }, picture } = this.shown, { rows, columns } = grid(picture), high = (up[1] - up[0]) / rows;

@@ -1,4 +1,4 @@
-"""Propagation paths of one frame as rays in the room: vertices, kind, level, and the cell of the radar in which each shows."""
+"""Propagation paths of one frame as rays in the room: corners, kind, level, and the radar cell of each."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
