@@ -20,6 +20,7 @@ export class SidePanel {
   private live = element("button", { "aria-pressed": "false" }, WORDS.live);
   private draw = element("button", { "aria-pressed": "false", title: "Then drag over the floor" }, WORDS.drawPath);
   private add = element("button", {}, WORDS.addPerson);
+  private range = element("input", { type: "text", "aria-label": "Range window in metres, near and far", placeholder: "the radar's own", inputmode: "decimal" });
   private recording = element("select", { "aria-label": "Recording" });
   private rows: { input: HTMLTextAreaElement; place: HTMLElement; remove: HTMLElement }[] = [];
 
@@ -31,6 +32,10 @@ export class SidePanel {
       return element("label", { class: "field" }, label, control);
     };
     this.seed.addEventListener("change", () => dispatch({ type: "edit", change: { seed: Math.max(0, Math.round(Number(this.seed.value)) || 0) } }));
+    this.range.addEventListener("change", () => {
+      const found = this.range.value.match(/\d+(\.\d+)?/g)?.map(Number);
+      dispatch({ type: "edit", change: { range: found?.length === 2 ? [found[0], found[1]] : null } });
+    });
     this.generate.addEventListener("click", () => dispatch({ type: "generate" }));
     this.live.addEventListener("click", () => dispatch({ type: this.live.getAttribute("aria-pressed") === "true" ? "stop" : "live" }));
     this.add.addEventListener("click", () => { dispatch({ type: "people", change: "add" }); this.rows.at(-1)?.input.focus(); });
@@ -39,7 +44,7 @@ export class SidePanel {
     this.root.append(this.hint,
       element("section", { class: "group" }, element("h2", {}, WORDS.people), this.people, element("div", { class: "line" }, this.add, this.draw), element("div", { class: "line go" }, this.generate, this.live)),
       group(WORDS.room, true, choose("room", "room", "Room"), choose("motion", "motion", "Motion")),
-      group(WORDS.radar, true, choose("radar", "radar", "Radar"), choose("board", "board", "Board")),
+      group(WORDS.radar, true, choose("radar", "radar", "Radar"), choose("board", "board", "Board"), element("label", { class: "field", title: "near and far range in metres, such as 0.5 to 6" }, "range (m)", this.range)),
       group(WORDS.making, true, choose("method", "method", "Method"), element("label", { class: "field" }, "seed", this.seed), choose("recogniser", "labels in Live", "Labels in Live")),
       group(WORDS.files, true, element("label", { class: "field" }, "recording", this.recording), this.fileButtons()), this.known);
   }
@@ -63,6 +68,7 @@ export class SidePanel {
     this.hint.textContent = isLive ? HINTS.stream : shown ? HINTS[shown.of === "stream" ? "generated" : shown.of] : "";
     this.hint.hidden = !this.hint.textContent;
     for (const [key, control] of Object.entries(this.selects)) if (control && control.value !== String(ask[key as keyof Ask])) control.value = String(ask[key as keyof Ask]);
+    if (document.activeElement !== this.range) this.range.value = ask.range ? `${ask.range[0]} to ${ask.range[1]}` : "";
     if (this.seed.value !== String(ask.seed)) this.seed.value = String(ask.seed);
     this.recording.value = shown?.of === "recording" && [...this.recording.options].some((one) => one.value === shown.name) ? shown.name : "";
     this.updatePeople(state);

@@ -9,8 +9,8 @@
 
 export type Place = [number, number];
 export interface Person { text: string; at: Place | null; path: Place[] | null }
-export interface Ask { room: string; people: Person[]; radar: string; board: string; method: string; seed: number; motion: string; recogniser: string }
-export interface Way { label: string; change: Partial<Ask> & { at?: Place | null; path?: null; text?: string; range?: Place; estimate?: string } }
+export interface Ask { room: string; people: Person[]; radar: string; board: string; method: string; seed: number; motion: string; recogniser: string; range: Place | null; landmarks: [string, Place][] }
+export interface Way { label: string; change: Partial<Ask> & { at?: Place | null; path?: null; text?: string; landmark?: string; estimate?: string } }
 export interface Problem { code: string; reason: string; ways: Way[]; of: "making" | "live" | "opening" | "other" }
 export interface Shown { id: string; of: "generated" | "recording" | "stream"; ask: Ask | null; name: string; radar: string; facts: string }
 export interface LiveFacts { frames: number; times: number; text: string; refused: string; label: { label: string; share: number; is_outside: boolean } | null }
@@ -18,6 +18,7 @@ export type Phase = "starting" | "idle" | "making" | "opening" | "live";
 export interface State {
   phase: Phase; job: number; ask: Ask; room: string; // whose room the scene shows, "" for none
   shown: Shown | null; kept: Shown | null; problem: Problem | null; live: LiveFacts | null; note: string; drawing: boolean; corners: Place[];
+  marking: string; // the kind of landmark that the next click on the floor places, or ""
 }
 
 export type Action =
@@ -26,7 +27,7 @@ export type Action =
   | { type: "people"; change: "add" | "remove"; person?: number }
   | { type: "go" } | { type: "generate" } | { type: "live" } | { type: "stop" } | { type: "dismiss" }
   | { type: "restore"; ask: Ask }
-  | { type: "place"; at: Place; note: string } | { type: "walk"; path: Place[] } | { type: "draw"; on: boolean } | { type: "corner"; at: Place }
+  | { type: "place"; at: Place; note: string } | { type: "walk"; path: Place[] } | { type: "draw"; on: boolean } | { type: "mark"; kind: string } | { type: "corner"; at: Place }
   | { type: "open"; recording: string } | { type: "open-result"; id: string; name: string }
   | { type: "keep"; on: boolean } | { type: "note"; text: string } | { type: "problem"; problem: Problem }
   // answers of the server
@@ -38,7 +39,7 @@ export type Effect =
   | { do: "open"; job: number; recording: string; result: string; name: string } | { do: "keep"; id: string } | { do: "address"; ask: Ask };
 
 export const nobody = (): Person => ({ text: "", at: null, path: null });
-export const roomKey = (ask: Ask) => `${ask.room} ${ask.radar}`; // another radar observes other places of the floor
+export const roomKey = (ask: Ask) => `${ask.room} ${ask.radar} ${ask.range ?? ""}`; // another radar observes other places of the floor
 export const same = (a: unknown, b: unknown) => JSON.stringify(a) === JSON.stringify(b);
 const spoken = (ask: Ask) => ({ ...ask, people: ask.people.filter((one, i) => i === 0 || one.text.trim()), recogniser: "" });
 
@@ -46,7 +47,7 @@ const spoken = (ask: Ask) => ({ ...ask, people: ask.people.filter((one, i) => i 
 export const isStale = ({ shown, ask, phase }: State) => shown !== null && phase === "idle" && (shown.ask === null || !same(spoken(shown.ask), spoken(ask)));
 
 export function start(ask: Ask): State {
-  return { phase: "starting", job: 0, ask, room: "", shown: null, kept: null, problem: null, live: null, note: "", drawing: false, corners: [] };
+  return { phase: "starting", job: 0, ask, room: "", shown: null, kept: null, problem: null, live: null, note: "", drawing: false, corners: [], marking: "" };
 }
 
 type Step = [State, Effect[]];
@@ -72,7 +73,7 @@ export function reduce(state: State, action: Action): Step {
   switch (action.type) {
     case "edit": {
       const ask = { ...state.ask, ...action.change }, isElsewhere = action.change.room !== undefined && action.change.room !== state.ask.room;
-      if (isElsewhere) ask.people = ask.people.map((one) => ({ ...one, at: null, path: null })); // places of another floor
+      if (isElsewhere) ask.people = ask.people.map((one) => ({ ...one, at: null, path: null })), ask.landmarks = []; // places of another floor
       if (action.change.motion) ask.people = ask.people.map((one) => ({ ...one, path: null }));
       return again({ ...state, ask, note: action.note ?? "" });
     }
@@ -89,9 +90,12 @@ export function reduce(state: State, action: Action): Step {
     case "stop": return [{ ...state, phase: state.phase === "live" ? "idle" : state.phase, job: state.phase === "live" ? state.job + 1 : state.job, live: null }, ends(state)];
     case "dismiss": return [{ ...state, problem: null }, []];
     case "restore": return same(action.ask, state.ask) ? [state, []] : make({ ...state, ask: action.ask, note: "" });
-    case "place": return again({ ...state, ask: first(state, { at: action.at, path: null }), note: action.note });
+    case "place":
+      if (state.marking) return again({ ...state, ask: { ...state.ask, landmarks: [...state.ask.landmarks.filter(([kind]) => kind !== state.marking), [state.marking, action.at]] }, marking: "", note: `the ${state.marking} is there` });
+      return again({ ...state, ask: first(state, { at: action.at, path: null }), note: action.note });
     case "walk": return make({ ...state, ask: first(state, { path: action.path, at: null }), note: "" });
     case "draw": return [{ ...state, drawing: action.on, corners: [] }, []];
+    case "mark": return [{ ...state, marking: action.kind, drawing: false, corners: [] }, []];
     case "corner": return [{ ...state, corners: [...state.corners, action.at] }, []];
     case "open": case "open-result": {
       const job = state.job + 1, [recording, result, name] = action.type === "open" ? [action.recording, "", action.recording] : ["", action.id, action.name];

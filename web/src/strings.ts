@@ -27,7 +27,7 @@ export const STATUS: Record<string, [string, string]> = { done: ["✓", "done"],
 export const PROBLEMS: Record<string, string> = {
   sentence: "This sentence is not understood.", refused: "Live goes on without this sentence.", no_room: "The motion finds no room on this floor within the radar's range.", no_target: "The room has no such thing to go to.",
   path: "The person cannot walk along this path.", room: "This room cannot be used.", upload: "These files cannot be used.", photo_without_depth: "A photo alone is not enough: depth is missing.",
-  recording: "This recording cannot be read.", gone: "This result is no longer kept.", session: "This session has ended; load the page again.", busy: "The studio is busy; try again in a minute.",
+  range: "The radar does not reach this range window.", recording: "This recording cannot be read.", gone: "This result is no longer kept.", session: "This session has ended; load the page again.", busy: "The studio is busy; try again in a minute.",
   live_one_person: "Live has one person.", offline: "The studio's server does not answer; is it still running?", too_long: "The motion does not fit into the time.", input: "The studio cannot do this.",
 };
 export const WAYS: Record<string, string> = { remove_others: "keep the first person only", free_place: "start anywhere free" };

@@ -15,7 +15,7 @@ import { exportChoices, saveOf } from "./exports";
 
 const LIVE_FRAMES = 120; // of the rolling picture
 const MAX_HISTORY = 30;
-const EMPTY: Ask = { room: "", people: [nobody()], radar: "", board: "", method: "", seed: 0, motion: "", recogniser: "" };
+const EMPTY: Ask = { room: "", people: [nobody()], radar: "", board: "", method: "", seed: 0, motion: "", recogniser: "", range: null, landmarks: [] };
 
 export class Studio {
   readonly root = element("main", { class: "mmweaver studio" });
@@ -128,7 +128,7 @@ export class Studio {
   }
   private async loadRoom(ask: Ask, signal?: AbortSignal): Promise<void> {
     if (this.rooms.has(roomKey(ask))) return;
-    this.rooms.set(roomKey(ask), new RoomView(await this.api.packed(`api/room/${encodeURIComponent(ask.room)}?radar=${encodeURIComponent(ask.radar)}`, { signal })));
+    this.rooms.set(roomKey(ask), new RoomView(await this.api.packed(`api/room/${encodeURIComponent(ask.room)}?radar=${encodeURIComponent(ask.radar)}&range=${ask.range ?? ""}`, { signal })));
     while (this.rooms.size > 4) this.rooms.delete(this.rooms.keys().next().value!);
   }
   private async openRecorded({ job, recording, result, name }: { job: number; recording: string; result: string; name: string }): Promise<void> {
@@ -192,7 +192,7 @@ export class Studio {
     player.scene.showStart(person.at); player.scene.showPath(state.drawing ? state.corners : person.path);
     this.compareButton.setAttribute("aria-pressed", String(kept !== null)); this.numbersButton.hidden = kept === null; this.exportChoice.disabled = !shown?.id;
     this.title.textContent = shown ? `${shown.name}` : ""; this.title.title = shown?.ask ? `Shown: ${shown.name}; ${this.panel.label("room", shown.ask.room)}, ${shown.radar}, ${this.panel.label("board", shown.ask.board)}, ${this.panel.label("method", shown.ask.method)}, seed ${shown.ask.seed}` : `Shown: ${shown?.name ?? "nothing"}`;
-    this.status.textContent = state.drawing ? (state.corners.length ? `${state.corners.length} corner${state.corners.length > 1 ? "s" : ""}; “${WORDS.walkPath}” takes it` : WORDS.drawing) : phase === "making" ? "generating…" : phase === "opening" ? "reading…" : phase === "starting" ? "starting…"
+    this.status.textContent = state.marking ? `click the floor where the ${state.marking} is` : state.drawing ? (state.corners.length ? `${state.corners.length} corner${state.corners.length > 1 ? "s" : ""}; “${WORDS.walkPath}” takes it` : WORDS.drawing) : phase === "making" ? "generating…" : phase === "opening" ? "reading…" : phase === "starting" ? "starting…"
       : live ? `live: ${live.frames} frames, made ${live.times.toFixed(1)} × faster than real time${labelText(live.label)}` : phase === "live" ? "live: starting…" : [shown?.facts, state.note].filter(Boolean).join("; ");
     this.showProblem(problem);
   }
@@ -208,12 +208,14 @@ export class Studio {
   // what a person does ----------------------------------------------------------------------------------------------
   follow({ change }: Pick<Way, "change">): void {
     if (change.estimate) { void this.take(this.api.json(`api/depth/${encodeURIComponent(change.estimate)}`, { method: "POST" })); return; }
-    const { at, path, text, estimate: _, range: __, ...more } = change, people = more.people ?? this.state.ask.people.map((one, i) => (i ? one : { ...one, ...(at !== undefined ? { at, path: null } : {}), ...(path === null ? { path: null } : {}), ...(text ? { text } : {}) }));
+    if (change.landmark) { this.dispatch({ type: "mark", kind: change.landmark }); return; }
+    const { at, path, text, estimate: _, landmark: __, ...more } = change, people = more.people ?? this.state.ask.people.map((one, i) => (i ? one : { ...one, ...(at !== undefined ? { at, path: null } : {}), ...(path === null ? { path: null } : {}), ...(text ? { text } : {}) }));
     const wasLive = this.state.problem?.code === "live_one_person";
     this.dispatch({ type: "edit", change: { ...more, people } });
     if (wasLive) this.dispatch({ type: "live" });
   }
   startAt(place: Place): void {
+    if (this.state.marking) { this.dispatch({ type: "place", at: place.map(round) as Place, note: "" }); return; }
     const free = this.player.room?.nearestStandable(...place);
     if (!free) { this.dispatch({ type: "problem", problem: { code: "no_room", reason: "Nobody can stand here within the radar's range; choose another radar or room.", ways: [], of: "other" } }); return; }
     const snaps = free.distance > this.player.room!.header.cell_m * Math.SQRT1_2, at = (snaps ? free.place : place).map(round) as Place, words = `${at[0].toFixed(2)} m right and ${at[1].toFixed(2)} m ahead`;
@@ -288,18 +290,21 @@ export class Studio {
     const choice = (key: "room" | "radar" | "method" | "board") => { const value = pairs.get(key); return value && this.panel.has(key, value) ? value : ask[key]; };
     const numbers = (text: string) => text.split(",").map(Number) as Place, isPlace = (place: Place) => place.length === 2 && place.every(Number.isFinite), at = pairs.get("at"), path = pairs.get("path")?.split(" ").map(numbers), texts = pairs.getAll("text");
     const people = (texts.length ? texts : [ask.people[0].text]).map((text, i) => ({ text, at: !i && at && isPlace(numbers(at)) ? numbers(at) : null, path: !i && path?.every(isPlace) ? path : null }));
-    return { ...ask, room: choice("room"), radar: choice("radar"), method: choice("method"), board: choice("board"), seed: Math.max(0, Math.round(Number(pairs.get("seed"))) || 0), people };
+    const range = numbers(pairs.get("range") ?? ""), landmarks = pairs.getAll("landmark").map((one): [string, Place] => [one.split(",")[0], numbers(one.split(",").slice(1).join(","))]).filter(([, place]) => isPlace(place));
+    return { ...ask, range: isPlace(range) ? range : null, landmarks, room: choice("room"), radar: choice("radar"), method: choice("method"), board: choice("board"), seed: Math.max(0, Math.round(Number(pairs.get("seed"))) || 0), people };
   }
 }
 
 /** The JSON of a request. */
-export function body({ people, ...ask }: Ask): Record<string, unknown> {
-  return { ...ask, text: people.map((one) => one.text.trim()).filter((text, i) => i === 0 || text), at: people[0].at, path: people[0].path };
+export function body({ people, landmarks, ...ask }: Ask): Record<string, unknown> {
+  return { ...ask, landmark: landmarks.map(([kind, place]) => `${kind}=${place}`), text: people.map((one) => one.text.trim()).filter((text, i) => i === 0 || text), at: people[0].at, path: people[0].path };
 }
 function address(ask: Ask): string {
   const pairs = new URLSearchParams({ room: ask.room, radar: ask.radar, method: ask.method, seed: String(ask.seed) }), [{ at, path }] = ask.people;
   for (const { text } of ask.people) if (text.trim()) pairs.append("text", text.trim());
   if (ask.board) pairs.set("board", ask.board);
+  if (ask.range) pairs.set("range", ask.range.join(","));
+  for (const [kind, place] of ask.landmarks) pairs.append("landmark", `${kind},${place}`);
   if (at) pairs.set("at", at.join(","));
   if (path) pairs.set("path", path.map((p) => p.join(",")).join(" "));
   return pairs.toString();

@@ -17,14 +17,15 @@ from mmweaver.core.registry import Registry
 from mmweaver.core.stages import Stages
 from mmweaver.propagation.board_effects import built_radar
 from mmweaver.propagation.diffuse_clutter import seed_of_room
+from mmweaver.propagation.paths import ScenePaths
 from mmweaver.propagation.ray_traced import ASSUMPTIONS, SEVERAL_PEOPLE, Simulator
 from mmweaver.propagation.static_paths import ALL_PATHS, Propagation, RayTracedRoom
 from mmweaver.signal.cube import radar_cube
 
 if TYPE_CHECKING:
     from mmweaver.models.neural_path_solver import LearnedRoom, ScattererNetwork
-    from mmweaver.models.room_inputs import GivenRoom
-    from mmweaver.propagation.background import BackgroundRecording
+    from mmweaver.models.scene_tensors import GivenRoom
+    from mmweaver.propagation.receiver import BackgroundRecording
 
 
 # entries of meta.json
@@ -146,6 +147,30 @@ class Physics:
             ),
         )
 
+    def paths(
+        self,
+        scene: Scene,
+        poses: tuple[PoseSequence, ...],
+        config: RadarConfig,
+        *,
+        frame: int,
+        seed: int,
+        background: RadarCube | None = None,
+        board: Board | None = None,
+    ) -> ScenePaths:
+        """The propagation paths of one frame, for a signal that this method made; arguments as in `Method`.
+
+        Args:
+            scene: The room.
+            poses: Motion of each person.
+            config: The radar.
+            frame: Number of the frame.
+            seed: Seed of the signal.
+            background: Background recording of the signal.
+            board: Board of the signal.
+        """
+        return self._prepared.get(scene, config, background, board).paths(poses, frame, seed)
+
     def _prepare(
         self, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None
     ) -> Simulator:
@@ -218,6 +243,23 @@ class Learned:
         assumptions = (LEARNED_NOTE, *order, *moved, *several, *_background_notes(room.background))
         return Signal(cube=cube, adc=adc, assumptions=assumptions, method="weaver")
 
+    def paths(
+        self,
+        scene: Scene,
+        poses: tuple[PoseSequence, ...],
+        config: RadarConfig,
+        *,
+        frame: int,
+        seed: int,
+        background: RadarCube | None = None,
+        board: Board | None = None,
+    ) -> ScenePaths:
+        """The propagation paths of one frame, see `Physics.paths`."""
+        from mmweaver.models.frame_motion import FrameMotion
+
+        room = self._encoded.get(scene, config, background, board)
+        return room.paths([FrameMotion.of(pose, config, 1, frame) for pose in poses])
+
     def _encode(
         self, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None
     ) -> "LearnedRoom":
@@ -234,7 +276,7 @@ class Learned:
 
 
 def _given_room(scene: Scene, config: RadarConfig, propagation: Propagation) -> "GivenRoom":
-    from mmweaver.models.room_inputs import GivenRoom
+    from mmweaver.models.scene_tensors import GivenRoom
 
     return GivenRoom.of(scene, config, propagation=propagation)
 

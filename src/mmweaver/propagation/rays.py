@@ -37,6 +37,14 @@ class Rays:
     velocity_mps: Float[Array, " ray"]
     azimuth_rad: Float[Array, " ray"]
 
+    @property
+    def arrays(self) -> dict[str, np.ndarray]:
+        """`ray_points` (ray, 4, 3) and `ray_facts` (ray, 6), the other attributes in order, for the playback page."""
+        facts = np.zeros((len(self.level_dbm), 6), np.float32)
+        columns = (self.interaction, self.level_dbm, self.length_m, self.velocity_mps, self.azimuth_rad)
+        facts[:, : len(columns)] = np.stack(columns, axis=-1)
+        return {"ray_points": self.vertices_m.astype(np.float32), "ray_facts": facts}
+
     @classmethod
     def of(cls, paths: ScenePaths, joints_m: Float[Array, "joint 3"], planes: Sequence[Plane]) -> "Rays":
         """The rays of the first frame.

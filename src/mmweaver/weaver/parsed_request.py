@@ -13,19 +13,19 @@ from mmweaver.core.options import Place
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import RadarPose, check_poses
 from mmweaver.io.result_folder import radar_meta
-from mmweaver.motion.empty_scene import NOBODY, says_nobody
+from mmweaver.motion.empty_floor import NOBODY, says_nobody
 from mmweaver.motion.language.plan import APPROXIMATED, MotionPlan
-from mmweaver.motion.language.sentence_parser import parse_sentence
-from mmweaver.motion.language.step_names import add_shown_text
+from mmweaver.motion.language.postures import add_shown_text
+from mmweaver.motion.language.sentence import parse_sentence
 from mmweaver.motion.language.timing import natural_s, repeated, schedule
-from mmweaver.motion.mocap.clip import MotionClip
-from mmweaver.motion.mocap.clip_resampling import check_lasts
+from mmweaver.motion.mocap.clip import MotionClip, check_lasts
 from mmweaver.motion.multi_person import MOST_PEOPLE
 from mmweaver.motion.people import check_subject
 from mmweaver.motion.planning.targets import SHORTEST_PATH_M
 from mmweaver.motion.register_activity import load_activity_plugins
 from mmweaver.weaver.request import Request
 
+MAX_CORNERS = 1000  # of a path
 MAX_FRAMES = 2000
 NEAREST_PERSON_M = 0.5  # for radars whose range window begins at 0
 FPS_LIMITS = (0.1, 1000.0)
@@ -234,6 +234,8 @@ def parsed_text(text: str) -> MotionPlan:
 
 def _along(plan: MotionPlan | None, path_m: Sequence[Place]) -> MotionPlan:
     """The plan with its first walk along a path; InputError if it has no walk, or the path is not valid."""
+    if len(path_m) > MAX_CORNERS:
+        raise InputError(f"a path has at most {MAX_CORNERS} points, not {len(path_m)}")
     points = tuple((float(x), float(y)) for x, y in path_m)
     if len(points) < 2 or not all(math.isfinite(value) for point in points for value in point):
         raise InputError("a path has at least two points, x and y in metres, such as '0,3 0,1.5 0.8,1.5'")
