@@ -458,10 +458,3 @@ def test_a_landmark_and_a_range_window_belong_to_the_request(page: TestClient):
     assert math.dist(header["meta"]["person"]["ends_at_m"], (0.6, 2.4)) < 1.2
     assert 4.4 < header["range_m"][1] < 4.6
     assert "--landmark=door=0.6,2.4 --range 0.7,4.5" in header["command"]
-
-
-def test_radar_npz_is_an_archive(page: TestClient, tmp_path: Path):
-    own = session(page)
-    name = generated(page, own)[0]["result"]
-    (tmp_path / "radar.npz").write_bytes(page.get(f"/api/export/{name}/npz", headers=own).content)
-    assert read_npz(tmp_path / "radar.npz")["cube"].dtype == np.complex64

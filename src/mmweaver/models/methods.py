@@ -264,8 +264,11 @@ class Learned:
     ) -> ScenePaths:
         """The propagation paths of one frame, see `Physics.paths`."""
         from mmweaver.models.frame_motion import FrameMotion
+        from mmweaver.models.neural_path_solver import LearnedRoom
 
         room = self._encoded.get(scene, config, background, board)
+        if not isinstance(room, LearnedRoom):
+            raise InputError("weights of --target signal give no propagation paths; take those of a scatterer network")
         return room.paths([FrameMotion.of(pose, config, 1, frame) for pose in poses])
 
     def _encode(

@@ -302,12 +302,13 @@ class Weaver(RoomReader):
         Raises:
             InputError: If the method does not give its paths, or there is no such frame.
         """
-        if not hasattr(self.method, "paths"):
+        paths_of: Any = getattr(self.method, "paths", None)
+        if paths_of is None:
             raise InputError(f"method {self.method_name!r} does not give its propagation paths")
         if not 0 <= frame < len(generation.cube.values):
             raise InputError(f"frame is 0 to {len(generation.cube.values) - 1}, not {frame}")
         scene = generation.scene
-        paths = self.method.paths(
+        paths = paths_of(
             scene,
             generation.motions,
             generation.cube.config,
