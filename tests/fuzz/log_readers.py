@@ -106,10 +106,7 @@ def _clouds() -> list[Reader]:
         for index in range(4)
     )
     table = np.column_stack([XYZV, [5.0, 6.0, 7.0]])
-    archives = [
-        {"frame": np.array([3, 3, 5]), "pts": table},
-        {"frame": np.array([0, 1]), "pts": np.ones((2, 8))},
-    ]
+    archives = [{"frame": np.array([3, 3, 5]), "pts": table}, {"frame": np.array([0, 1]), "pts": np.ones((2, 8))}]
 
     npz = {"damaged": lambda rng: m.mutated_npz(rng.choice(archives), rng)}
     return [

@@ -166,7 +166,7 @@ def members_reader(name: str, data: Path, read: Callable[[Path], Any], wrong: Ca
             return archive_of({})
         return archive_of(_damaged_array(sound, rng) if "zarr" in name else _damaged_member(sound, rng))
 
-    return Reader(name=name, suffix=".members.zip", read=read_damaged, damaged=damaged, wrong=wrong)
+    return Reader(name, ".members.zip", damaged, read_damaged, wrong)
 
 
 def archive_of(members: dict[str, bytes]) -> bytes:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 # in the order of the help; each is a module with Options, run and EXAMPLES, imported on demand
 COMMANDS = {
     "generate": "generate the signal of a person in the room of a photo",
-    "sample": "write files to try the other commands with",
+    "sample": "write files to try the other commands with, or sample a field",
     "studio": "make and watch radar data in the browser",
     "view": "play a result folder in the browser",
     "plot": "draw the features of a signal, as recognisers take them",
@@ -30,6 +30,7 @@ COMMANDS = {
     "points": "read a point cloud of a board or a data set",
     "pose": "estimate the poses of a person from a radar's points",
     "radar": "print a radar's chirp, resolutions and limits",
+    "fit": "fit a field to a signal, a network or scatterers, that can be sampled anywhere",
     "compress": "store a recording in few bytes",
     "decompress": "read a .mmw file back into radar.npz",
     "info": "print what a .mmw or .mmwl file holds",
