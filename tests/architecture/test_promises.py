@@ -14,7 +14,7 @@ ROW = re.compile(r"^\| (?P<name>[^|]+) \| `(?P<test>tests/\S+::\w+)` \|$", re.MU
 def test_every_promise_has_its_line_once_and_its_test():
     promises = read_promises()
     assert len(promises) > 40
-    assert max(Counter((one.name for one in promises)).values()) == 1
+    assert max(Counter(one.name for one in promises).values()) == 1
     for one in promises:
         source = (ROOT / one.path).read_text(encoding="utf-8")
         assert source.count(f"{one.line}\n") == 1, f"{one.name}: {one.line!r} in {one.path}"
