@@ -128,7 +128,6 @@ REVIEWED: dict[str, str] = {
             "or one recording (□)",
             "give those of: mmweaver train weaver",
             "give those of: mmweaver train hypernetwork",
-            "--features are of --target signal",
             "□ has target □, not □; give --target □",
             "train anew or take the mmweaver version",
             "mmweaver train --config",
