@@ -170,10 +170,7 @@ ROWS = (
     Row(
         "the echoes of a chirp gather at fewer ranges",
         f"{PROCESS} --overwrite --radar-set lanes=4",
-        (
-            plus("--radar-set lanes=2", "--radar-set", "lanes=2"),
-            instead("another --radar", "--radar-set lanes=4"),
-        ),
+        (plus("--radar-set lanes=2", "--radar-set", "lanes=2"), instead("another --radar", "--radar-set lanes=4")),
     ),
     Row("the transmitters fit the static echoes to", f"{PROCESS} --overwrite --tx-order 2,0,1", (add("--tx-order"),)),
     Row(
@@ -206,10 +203,7 @@ ROWS = (
     Row(
         "give --layout mmmesh or rf_genesis",
         "process {mmmesh} --radar mmmesh --no-pictures --no-analysis --out out",
-        (
-            add("--layout"),
-            plus("or rf_genesis", "--layout", "rf_genesis"),
-        ),
+        (add("--layout"), plus("or rf_genesis", "--layout", "rf_genesis")),
     ),
     Row("name its kind with --layout", "points {points_log} -o out.npz", (add("--layout", "csv"),)),
     # radars
@@ -230,9 +224,7 @@ ROWS = (
         (plus("--radar-set subframe=N", "--radar-set", "subframe=0"),),
     ),
     Row(
-        "it has one plain frame and no sub-frames",
-        "radar {best_range} --radar-set subframe=0",
-        (drop("--radar-set"),),
+        "it has one plain frame and no sub-frames", "radar {best_range} --radar-set subframe=0", (drop("--radar-set"),)
     ),
     Row(
         "has no sub-frames; leave out --radar-set subframe=",
@@ -268,19 +260,13 @@ ROWS = (
     Row(
         "exists; choose another name or allow it with --overwrite",
         "points {points} -o out.npz",
-        (
-            instead("choose another name", "out.npz", "other.npz"),
-            flag("--overwrite"),
-        ),
+        (instead("choose another name", "out.npz", "other.npz"), flag("--overwrite")),
         before=lambda: _written("out.npz"),
     ),
     Row(
         "exists and is not empty; choose another --out",
         PROCESS,
-        (
-            instead("choose another --out", "out", "other"),
-            flag("--overwrite"),
-        ),
+        (instead("choose another --out", "out", "other"), flag("--overwrite")),
         before=lambda: _written("out/meta.json"),
     ),
     Row(
@@ -301,14 +287,7 @@ ROWS = (
         before=lambda: _written("out"),
     ),
     # compressed files
-    Row(
-        "say how small with --bytes",
-        COMPRESS,
-        (
-            add("--bytes", "4000"),
-            add("--quality", "30"),
-        ),
-    ),
+    Row("say how small with --bytes", COMPRESS, (add("--bytes", "4000"), add("--quality", "30"))),
     Row("--append adds to a .mmw file", f"{COMPRESS} --append --quality 30 --overwrite", (drop("--overwrite"),)),
     Row(
         "a cube has --quality, and is stored exactly",

@@ -6,7 +6,6 @@ import pytest
 from mmweaver.compression.scatterer_field import ScattererField
 from mmweaver.compression.scatterers.fitting import FitRecipe
 from mmweaver.compression.signal_field import finer_grid
-from mmweaver.core.errors import InputError
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
 from mmweaver.signal.cube import adc_from_cube, radar_cube
 from tests.compression.echoes import SMALL, crowd, direction_of, error_db, exact_point, middle_s
@@ -113,10 +112,3 @@ def test_noise_has_the_power_and_correlation_of_the_recording():
         alike = [np.real(np.sum(v * np.roll(v, 1, axis).conj()) / np.sum(np.abs(v) ** 2)) for v in (ours, cube.values)]
         assert alike[0] == pytest.approx(alike[1], abs=0.06)
     assert np.array_equal(ours, field.with_noise(silent, seed=1).values)
-
-
-@pytest.mark.parametrize("value", [0.0, np.nan])
-def test_an_empty_cube_is_refused(value: float):
-    cube = crowd()
-    with pytest.raises(InputError):
-        ScattererField.fit(replace(cube, values=np.full_like(cube.values, value)))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.skeleton import joint
-from mmweaver.motion.micro_motion import STILL, MicroMotion, MicroMotionSettings, Waves
+from mmweaver.motion.micro_motion import MicroMotion, MicroMotionSettings
 from mmweaver.propagation.body_model import ScatteringBody
 from tests.rooms import standing_person
 
@@ -91,13 +91,6 @@ def test_rates_belong_to_the_person_and_the_moment_to_the_take():
     assert np.array_equal(moved(0, 0), moved(0, 0))
 
 
-def test_how_time_is_cut_changes_no_bit():
-    one = MicroMotion(0, 0, MicroMotionSettings())
-    whole, part = one.moved(JOINTS, TIME_S, 1.75), one.moved(JOINTS[40:60], TIME_S[40:60], 1.75)
-    assert np.array_equal(whole[40:60], part)
-    assert np.array_equal(one.chest_m(TIME_S)[40:60], one.chest_m(TIME_S[40:60]))
-
-
 def test_breath_is_millimetres_at_a_quarter_hertz():
     chest = np.stack(
         [MicroMotion(subject, 0, MicroMotionSettings(heart_m=0.0)).chest_m(TIME_S) for subject in range(20)]
@@ -115,14 +108,3 @@ def test_the_chest_breathes_forwards_and_the_limbs_do_not():
     front = body.skin(JOINTS[:1]).normal[0] @ [0.0, -1.0, 0.0]  # the person faces the radar
     assert size[(size > 0) & (front > 0.7)].mean() > 3 * size[(size > 0) & (front < -0.7)].mean()
     assert (size > 0).mean() < 0.5
-
-
-def test_still_is_still():
-    assert np.array_equal(moved(0, 0, STILL), np.zeros_like(JOINTS))
-    assert not MicroMotion(0, 0, STILL).chest_m(TIME_S).any()
-
-
-def test_waves_have_the_rms_asked_for():
-    rng = np.random.Generator(np.random.SFC64(0))
-    waves = Waves(rng, (40,), 0.2, 2.0, 1.0).at(np.arange(0, 600, 0.05))
-    assert np.sqrt((waves**2).mean()) == pytest.approx(1.0, rel=0.05)

@@ -6,7 +6,6 @@ import pytest
 from mmweaver.recognition.background_mask import (
     NO_CELLS,
     background_cells,
-    left_out_lines,
     persistent_motion_cells,
     remove_motion,
 )
@@ -41,19 +40,6 @@ def test_whoever_walks_through_the_empty_place_masks_nothing():
     walked = recording_of(np.arange(FRAMES), y_m=1 + 0.15 * np.arange(FRAMES), velocity_mps=1.5)
     assert background_cells([walked]).shape == background_cells([]).shape == (0, 2)
     assert remove_motion(walked, NO_CELLS) is walked
-
-
-def test_a_fan_is_found_without_an_empty_place_where_people_walk_elsewhere():
-    def exerciser(number: int) -> Way:
-        return 0.4 * (number % 3), 1.6 + 0.3 * (number % 4)
-
-    recordings = [moving(FAN[:2], walker(one) if one < 4 else exerciser(one)) for one in range(12)]
-    cells = persistent_motion_cells(recordings)
-    assert len(cells) == 9
-    (line,) = left_out_lines(cells)
-    assert "3.1 m ahead and 1.1 m to the left" in line
-    assert len(persistent_motion_cells(recordings[:9])) == 0  # too few recordings
-    assert left_out_lines(NO_CELLS) == []
 
 
 @pytest.mark.parametrize(

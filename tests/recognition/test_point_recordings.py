@@ -47,19 +47,6 @@ def test_points_that_mmweaver_wrote_need_no_columns(tmp_path: Path):
     assert found.cloud.x_m.tolist() == [1, 2, 3]
 
 
-def test_an_empty_room_may_have_no_points(tmp_path: Path):
-    np.savez(tmp_path / "a.npz", frame=np.zeros(0, int), pts=np.zeros((0, 6)), num_frames=30)
-    one = read_task_recording(tmp_path / "a.npz", SETTINGS)
-    assert (one.num_frames, len(windows_of(one, SETTINGS))) == (30, 3)
-
-
-def test_without_points_and_a_number_of_frames_it_lasts_a_window(tmp_path: Path):
-    np.savez(tmp_path / "a.npz", frame=np.zeros(0, int), pts=np.zeros((0, 6)))
-    write_points_npz(tmp_path / "points.npz", recording().cloud)
-    for name in ("a.npz", "points.npz"):
-        assert len(windows_of(read_task_recording(tmp_path / name, SETTINGS), SETTINGS)) == 1
-
-
 def test_a_result_folder_is_a_recording_of_all_its_frames(tmp_path: Path):
     folder = tmp_path / "walk" / "result"
     folder.mkdir(parents=True)

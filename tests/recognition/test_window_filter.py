@@ -1,7 +1,6 @@
 """Multipath, neighbours and fans are left out; a body with wide arms, who walks alone, and what is at rest stay."""
 
 import numpy as np
-import pytest
 
 from mmweaver.recognition.background_mask import WindowFilter, background_cells, remove_multipath
 from mmweaver.recognition.point_recordings import PointRecording
@@ -23,19 +22,6 @@ def test_an_echo_behind_the_person_is_left_out():
     found = remove_multipath(recording((0.0, 2.0, 0.5, 4), (1.2, 2.8, 0.5, 2))).cloud
     assert len(found.frame) == 4 * FRAMES
     assert found.x_m.max() < 0.5
-
-
-@pytest.mark.parametrize(
-    "groups",
-    [
-        [(0.0, 2.0, 0.5, 1), (1.2, 2.8, 0.5, 6)],  # many points behind few
-        [(0.0, 2.0, 0.5, 4), (1.2, 4.0, 0.0, 2)],  # at rest
-        [(-0.8, 2.0, 0.5, 2), (0.8, 2.0, -0.5, 2), (0.0, 2.0, 0.2, 2)],  # hands at either side of a body
-    ],
-)
-def test_others_stay(groups: list[Group]):
-    one = recording(*groups)
-    assert remove_multipath(one) is one
 
 
 def test_a_runner_is_not_an_echo_of_where_they_were():

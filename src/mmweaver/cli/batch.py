@@ -184,6 +184,7 @@ class _NoPlaceError(Exception):
 def run_batch(asked: "Options", out: Path) -> int:
     """Makes what is missing of the sequences and prints which there are. Raises InputError."""
     from mmweaver.cli.generate_inputs import radar_of, read_background, room_of, weaver_of
+    from mmweaver.core.atomic_files import claimed_folder
     from mmweaver.core.output_checks import check_output_folder
     from mmweaver.datasets.paired_sampling import GivenPlacing
 
@@ -199,7 +200,8 @@ def run_batch(asked: "Options", out: Path) -> int:
         start_m=person["at"], heading_deg=heading, height_m=person["height_m"], subject=person["subject"]
     )
     sequences, refused = _sequences(asked, texts, requests, room, out, given)
-    summary = Batch(asked=asked, weaver=weaver, room=room, requests=requests).run(sequences, refused)
+    with claimed_folder(out):
+        summary = Batch(asked=asked, weaver=weaver, room=room, requests=requests).run(sequences, refused)
     count = len(summary["sequences"])
     lines = [f"{count} sequence{'s' if count > 1 else ''} in {out}, listed in {LIST}"]
     lines += [summary["leaks"]] if "leaks" in summary else []
@@ -229,7 +231,9 @@ def _checked_texts(asked: "Options") -> list[str]:
     assert asked.texts is not None
     texts = read_texts(asked.texts)
     if not 1 <= _repeat(asked) <= MAX_SEQUENCES // len(texts):
-        raise InputError(f"--per-class must be 1 to {MAX_SEQUENCES // len(texts)} for {len(texts)} sentences")
+        most = max(MAX_SEQUENCES // len(texts), 0)
+        advice = f"--per-class must be 1 to {most}" if most else "write fewer sentences"
+        raise InputError(f"{asked.texts} has {len(texts)} sentences, of which {MAX_SEQUENCES:,} are made: {advice}")
     return texts
 
 

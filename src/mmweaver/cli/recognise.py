@@ -70,13 +70,14 @@ def run(asked: Options) -> int:
 
 def _train(asked: Options) -> int:
     from mmweaver.cli.recognise_text import training_lines
+    from mmweaver.core.atomic_files import claimed_folder
     from mmweaver.recognition.task_file import read_task
     from mmweaver.recognition.train_recogniser import train_recogniser, usual_sequences
     from mmweaver.recognition.training_windows import TrainingOptions
 
     sequences = usual_sequences(read_task(asked.place)) if asked.sequences is None else asked.sequences
     options = TrainingOptions(sequences=sequences, seed=asked.seed)
-    with StageBar(0, quiet=asked.quiet) as bar:
+    with StageBar(0, quiet=asked.quiet) as bar, claimed_folder(asked.out):
         model = train_recogniser(asked.place, asked.out, options, bar.progress, asked.recordings)
     return asked.report({"out": str(asked.out), **model.meta}, *training_lines(model, asked.out))
 

@@ -1,7 +1,7 @@
 """mmweaver train: weights from a data set, from recordings of one's own room, or from the sentences of a task."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -125,6 +125,7 @@ def run(asked: Options) -> int:
         InputError: For options or data that cannot be used.
     """
     _check(asked)
+    from mmweaver.core.atomic_files import claimed_folder
     from mmweaver.core.output_checks import check_output_folder
     from mmweaver.training.device import ComputeDevice
 
@@ -134,9 +135,10 @@ def run(asked: Options) -> int:
     check_output_folder(asked.out, overwrite=True, files=RUN_FILES, inputs=[start])
     recipe = asked.mode
     try:
-        summary = _RECIPES[recipe](asked, place, is_quiet)
-        if place.is_first:
-            write_request(asked.out, asked)
+        with claimed_folder(asked.out) if place.is_first else nullcontext():
+            summary = _RECIPES[recipe](asked, place, is_quiet)
+            if place.is_first:
+                write_request(asked.out, asked)
     except KeyboardInterrupt:
         file = asked.out / "checkpoint.pt"
         kept = f"{file} is kept: the same command resumes from it" if file.is_file() else ""

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.core.atomic_files import atomic_file, create_once, staged_folder
+from mmweaver.core.atomic_files import atomic_file, claimed_folder, create_once, staged_folder
 from mmweaver.core.boards import find_board
 from mmweaver.core.errors import InputError
 from mmweaver.core.optional_packages import need
@@ -240,15 +240,16 @@ class SetBuilder:
             InputError: If the folder contains something else or a set with other settings, or no place serves an
                 activity.
         """
-        self._begin()
-        if not self.is_made:
-            for number, one in enumerate(self.plan):
-                self._part(number, one)
-                if listener is not None:
-                    listener(number + 1, len(self.plan))
-            self._assemble()
-        remove(self.out / PARTS)
-        write_set_card(self.out)
+        with claimed_folder(self.out):
+            self._begin()
+            if not self.is_made:
+                for number, one in enumerate(self.plan):
+                    self._part(number, one)
+                    if listener is not None:
+                        listener(number + 1, len(self.plan))
+                self._assemble()
+            remove(self.out / PARTS)
+            write_set_card(self.out)
         return read_json(self.out / LEAKS_FILE)
 
     def check_folder(self) -> None:

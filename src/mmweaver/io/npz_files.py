@@ -157,11 +157,14 @@ def write_points_npz(path: Path, points: PointCloud) -> None:
 
     Args:
         path: The file.
-        points: Point cloud; firmware points have a sixth column, `intensity`, in device counts.
+        points: Point cloud; firmware points have a sixth column, `intensity`, in device counts, logged ones also the
+            number of frames, with those without points.
     """
     names = (*POINT_COLUMNS, *(name for name in FIRMWARE_COLUMNS if hasattr(points, name)))
     columns = {name: np.asarray(getattr(points, name), np.float32) for name in names}
-    write_npz(path, frame=np.asarray(points.frame, np.int32), **columns)
+    frames = getattr(points, "num_frames", None)
+    more = {} if frames is None else {"num_frames": np.int32(frames)}
+    write_npz(path, frame=np.asarray(points.frame, np.int32), **columns, **more)
 
 
 def read_points_npz(path: str | Path) -> PointCloud:

@@ -12,7 +12,7 @@ from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.core.virtual_array import azimuth_resolution_rad, has_elevation
 from mmweaver.io.mmwave_studio import is_mmwave_studio, read_mmwave_studio, read_studio_script
 from mmweaver.io.radar_options import RadarOptions, split_radar
-from mmweaver.io.ti_cfg import cfg_path, read_ti_cfg
+from mmweaver.io.ti_cfg import cfg_path, read_ti_cfg, ti_cfg_lines
 from mmweaver.io.ti_firmware import read_ti_firmware
 
 
@@ -56,6 +56,31 @@ def load_firmware(name_or_path: str) -> FirmwareSettings:
     """
     path = None if name_or_path in PRESETS else cfg_path(name_or_path)
     return FIRMWARE.get(split_radar(name_or_path)[0], FirmwareSettings()) if path is None else read_ti_firmware(path)
+
+
+def announced_frames(name_or_path: str) -> int | None:
+    """Number of frames that the board was configured to send.
+
+    Args:
+        name_or_path: As in `load_radar`.
+
+    Returns:
+        The number in frameCfg or advFrameCfg of a .cfg, or in mmWave Studio's JSON; None if it is endless or unknown.
+    """
+    path = Path(split_radar(name_or_path)[0])
+    try:
+        if name_or_path in PRESETS or not path.is_file():
+            return None
+        if path.suffix.lower() == ".cfg":
+            lines = ti_cfg_lines(path, {"advFrameCfg": 3})
+            one = lines["frameCfg"][-1].whole(3) if "frameCfg" in lines else lines["advFrameCfg"][-1].whole(2)
+        else:
+            device = read_json(path)["mmWaveDevices"][0]["rfConfig"]
+            frames = device.get("rlFrameCfg_t") or device["rlAdvFrameCfg_t"]["frameSeq"]
+            one = int(frames["numFrames"])
+    except (InputError, KeyError, IndexError, TypeError, ValueError, AttributeError):
+        return None
+    return one or None
 
 
 def _read_json_radar(path: Path, options: RadarOptions) -> RadarConfig:

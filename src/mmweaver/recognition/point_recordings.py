@@ -15,7 +15,6 @@ from mmweaver.core.records import PointCloud
 from mmweaver.core.safe_files.regular_files import check_exists
 from mmweaver.core.safe_files.safe_arrays import NpzArrays, read_npz
 from mmweaver.io.point_clouds.read_points import read_points
-from mmweaver.io.point_clouds.ti_uart import read_ti_uart
 from mmweaver.recognition.task_file import RecordedColumns, RecordingSettings
 
 SUFFIXES = (".npz", ".dat", ".csv", ".txt", ".bin")
@@ -150,11 +149,8 @@ def _read_cloud(file: Path, settings: RecordingSettings) -> tuple[PointCloud, in
         held = read_npz(file, only=("frame", "pts", "num_frames", "x_m"))
         if "pts" in held or "x_m" not in held:  # otherwise its columns are named, as in files of `mmweaver points`
             return _from_columns(held, file, settings.columns)
-    if file.suffix.lower() == ".dat":
-        log = read_ti_uart(file)
-        return log.points, max(len(log.frame_number), 1)
     cloud = read_points(file)
-    return cloud, max(_num_frames(cloud.frame), _frames_of_signal(file, settings))
+    return cloud, max(cloud.num_frames, _frames_of_signal(file, settings))
 
 
 def _frames_of_signal(file: Path, settings: RecordingSettings) -> int:

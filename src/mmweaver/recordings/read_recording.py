@@ -22,8 +22,8 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.range_window import chosen_range
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
 from mmweaver.core.safe_files.regular_files import check_exists
+from mmweaver.core.shapes import LostShare
 from mmweaver.io.capture_std import PACKETS, RADAR, is_capture, read_radar_capture
-from mmweaver.io.dca1000 import read_bin
 from mmweaver.io.dca_packets import PacketCapture, read_pcap
 from mmweaver.io.npz_files import read_radar_npz
 from mmweaver.io.peer_arrays import LAYOUTS, detect_layout
@@ -33,7 +33,9 @@ from mmweaver.io.stream_folder import is_stream, read_stream_cube
 from mmweaver.io.ti_calibration import read_ti_calibration
 from mmweaver.io.ti_cfg import refuse_headers
 from mmweaver.propagation.board_correction import corrected
+from mmweaver.recordings.dca_bin import open_dca_bin, read_frames
 from mmweaver.signal.cube import adc_from_cube, cropped, radar_cube, tdm_compensation
+from mmweaver.signal.lost_chirps import without_lost_chirps
 
 CUBE = "radar.npz"
 PACKET_SUFFIXES = (".pcap", ".pcapng")
@@ -71,6 +73,9 @@ class Recording:
     packets: PacketCapture | None = None  # of a capture folder or packet file
     calibration: ChannelCalibration | None = None  # channel calibration that was applied
     board: CorrectedBoard | None = None  # board whose errors were removed
+    lost_share: LostShare | None = None  # of the samples of each chirp read; lost chirps are estimated
+    num_frames: int | None = None  # frames of the whole recording, where only some of it were read
+    notes: tuple[str, ...] = ()  # what was found about the files
 
     @cached_property
     def cube(self) -> RadarCube:
@@ -168,8 +173,23 @@ def _read_samples(found: Recording, reading: RawReading, frames: slice) -> Recor
         refuse_headers(found.radar_source)
     if path.suffix.lower() in PACKET_SUFFIXES:
         packets = read_pcap(path, config, iq_order=iq_order, frames=frames)
-        return replace(found, adc=packets.adc, packets=packets, iq_order=iq_order)
-    return replace(found, adc=read_bin(path, config, iq_order=iq_order, frames=frames), iq_order=iq_order)
+        return replace(found, iq_order=iq_order, **_of_packets(packets))
+    opened = open_dca_bin(path, config, iq_order)
+    adc, lost_share = read_frames(opened, config, frames, iq_order)
+    return replace(
+        found, adc=adc, lost_share=lost_share, num_frames=opened.num_frames, notes=opened.notes, iq_order=iq_order
+    )
+
+
+def _of_packets(packets: PacketCapture) -> dict[str, Any]:
+    """Fields of a recording from its packets, lost chirps estimated."""
+    adc = without_lost_chirps(packets.adc, packets.lost_share > 0)
+    return {
+        "adc": adc,
+        "lost_share": packets.lost_share,
+        "num_frames": packets.num_frames,
+        "packets": replace(packets, adc=adc),
+    }
 
 
 def _stretch(found: Recording, frames: slice) -> Recording:
@@ -278,11 +298,10 @@ def _read_capture(path: Path, reading: RawReading, frames: slice) -> Recording:
         path=capture.folder,
         files={"recording": capture.folder / PACKETS, "radar": cfg},
         config=capture.config,
-        adc=capture.packets.adc,
         iq_order=capture.config.lvds_iq_order,
         radar_source=str(cfg),
-        packets=capture.packets,
         first_frame=frames.start or 0,
+        **_of_packets(capture.packets),
     )
     return _calibrated(found, read_ti_calibration(str(cfg)))
 

@@ -7,7 +7,7 @@ from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import AdcCube
 from mmweaver.signal.cube import radar_cube
 from studies.fields.finer_radar import centred, centring_phasor
-from tests.cubes import point_adc, point_cube
+from tests.cubes import point_cube
 
 
 def turn_per_bin_rad(values: np.ndarray, axis: int) -> float:
@@ -22,13 +22,6 @@ def test_it_is_unitary_and_invertible():
     assert np.allclose(np.abs(there.values), np.abs(cube.values), rtol=1e-5)
     back = there.values * centring_phasor(cube.config, cube.grid).conj()[None, :, :, None]
     assert np.allclose(back, cube.values, atol=1e-6 * np.abs(cube.values).max())
-
-
-@pytest.mark.parametrize(("axis", "raw_rad"), [(1, np.pi), (2, np.pi)])
-def test_raw_cubes_rotate_by_pi_per_bin_and_centred_ones_do_not(axis: int, raw_rad: float):
-    cube = radar_cube(point_adc())
-    assert turn_per_bin_rad(cube.values, axis) == pytest.approx(raw_rad, abs=0.25)
-    assert turn_per_bin_rad(centred(cube).values, axis) < 0.25
 
 
 def test_one_scatterer_is_real_across_its_range_lobe():

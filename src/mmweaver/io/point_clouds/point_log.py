@@ -14,16 +14,20 @@ from mmweaver.core.records import PointCloud
 from mmweaver.core.shapes import PerPoint
 
 MISSING = float("nan")
+MAX_MISSING = 10_000  # frames; a larger step of the counter is a restart
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class LoggedCloud(PointCloud):
     """A PointCloud stored by a board or a data set, with `intensity` in its own unit (nan if missing).
 
-    x to the right, y away from the radar, z up; `frame` counts from 0 in file order.
+    x to the right, y away from the radar, z up; `frame` counts from 0. `num_frames` includes frames without points,
+    those that the log lacks and those at its end; `notes` are sentences on what was found.
     """
 
     intensity: PerPoint
+    num_frames: int
+    notes: tuple[str, ...] = ()
 
 
 Reader = Callable[[Path], LoggedCloud]
@@ -70,6 +74,8 @@ def logged_cloud(
     *,
     snr_db: np.ndarray | None = None,
     intensity: np.ndarray | None = None,
+    num_frames: int | None = None,
+    notes: tuple[str, ...] = (),
 ) -> LoggedCloud:
     """Builds a cloud from columns; missing columns become nan.
 
@@ -79,6 +85,8 @@ def logged_cloud(
         velocity_mps: Radial velocity in m/s, (point,).
         snr_db: SNR in dB, (point,). Default: missing.
         intensity: Intensity in the unit of the source, (point,). Default: missing.
+        num_frames: Number of frames. Default: up to the last point.
+        notes: Sentences on what was found. Default: none.
 
     Returns:
         The cloud.
@@ -93,4 +101,38 @@ def logged_cloud(
         radial_velocity_mps=np.asarray(velocity_mps, float),
         snr_db=nothing if snr_db is None else np.asarray(snr_db, float),
         intensity=nothing if intensity is None else np.asarray(intensity, float),
+        num_frames=(int(np.max(frame)) + 1 if len(frame) else 0) if num_frames is None else num_frames,
+        notes=notes,
     )
+
+
+@dataclass(frozen=True, kw_only=True)
+class CountedFrames:
+    """Frame of each packet by the board's own counter, the number of frames, and sentences on losses."""
+
+    frame: np.ndarray
+    num_frames: int
+    notes: tuple[str, ...]
+
+
+def counted_frames(number: np.ndarray) -> CountedFrames:
+    """Frames of packets: numbers that are missing are frames without points, a smaller number is a restart.
+
+    Args:
+        number: Frame number of each packet in file order, (packet,). Sub-frames of a frame share its number.
+
+    Returns:
+        Frames from 0.
+
+    >>> counted_frames(np.array([7, 8, 10, 3])).frame.tolist()
+    [0, 1, 3, 4]
+    """
+    step = np.diff(number.astype(np.int64))
+    is_restart = (step < 0) | (step > MAX_MISSING)
+    frame = np.concatenate([[0], np.cumsum(np.where(is_restart, 1, step))]).astype(int)[: len(number)]
+    missing, restarts = int((step[~is_restart] - 1).clip(0).sum()), int(is_restart.sum())
+    total = int(frame[-1]) + 1 if len(frame) else 0
+    notes = (f"{missing} of {total} frames that the board counted are missing from the log",) if missing else ()
+    if restarts:
+        notes += (f"the board's counter restarts {restarts} times; the length of these pauses is not known",)
+    return CountedFrames(frame=frame, num_frames=total, notes=notes)

@@ -17,11 +17,10 @@ from mmweaver.motion.mocap.axes import is_reflected, rotate_z_up, unit_of, up_of
 from mmweaver.motion.mocap.bvh import read_bvh
 from mmweaver.motion.mocap.cleaning import check_bones, cut_t_pose, fill_gaps
 from mmweaver.motion.mocap.clip import MotionClip, RawMotion
-from mmweaver.motion.mocap.joint_arrays import read_npy, read_npz
+from mmweaver.motion.mocap.joint_arrays import MAX_FRAMES, read_npy, read_npz
 from mmweaver.motion.mocap.joint_names import to_22
 
 FPS_LIMITS = (1.0, 2000.0)
-MAX_FRAMES = 1_000_000
 MAX_UNITS = 1e7  # 10 km in millimetres
 KINDS = ".bvh, .npy (22 joints or HumanML3D features) or .npz (AMASS, SMPL, CMU, joints)"
 
