@@ -123,8 +123,8 @@ class Samples(RadarChoice, Layout):
 
     layout: str | None = option(
         "what a .npy holds: its axes in their order, such as frame,loop,tx,rx,sample, or whose it is: hupr (a frame or"
-        " a folder of them), mmmesh, rf_genesis, cubelearn",
-        "AXES|NAME",
+        " a folder of them), mmmesh, rf_genesis, cubelearn; or a mapping file that says it of a .mat or HDF5 file",
+        "AXES|NAME|FILE.toml",
         group="raw samples",
     )
 
