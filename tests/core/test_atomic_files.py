@@ -227,13 +227,6 @@ def test_a_file_that_another_command_replaces_leaves_the_checksums(tmp_path: Pat
     assert set(read_sums(tmp_path / "out") or {}) == {"b.txt"}
 
 
-def test_the_first_of_several_creates(tmp_path: Path):
-    assert create_once(tmp_path / "plan.json", "one") == "one"
-    assert create_once(tmp_path / "plan.json", "two") == "one"
-    assert names(tmp_path) == ["plan.json"]
-    assert written()[-1] == tmp_path / "plan.json"
-
-
 def test_the_longest_name_that_fits_can_be_written(tmp_path: Path):
     target = tmp_path / ("a" * 251 + ".npz")
     with atomic_file(target) as temporary:

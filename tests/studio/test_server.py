@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import io
+import math
 import shlex
 import zipfile
 from collections.abc import Iterator
@@ -12,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 pytest.importorskip("starlette", reason="the studio's extra is not installed")
 pytest.importorskip("httpx", reason="httpx, which starlette's test client needs, is not installed")
@@ -368,9 +370,9 @@ def test_a_room_without_a_place_offers_recovery_options(page: TestClient, monkey
     monkeypatch.setattr(Weaver, "carry_out", none)
     answer = page.post("/api/generate", json=WALK, headers=session(page))
     assert answer.status_code == 422
-    assert answer.json()["ways_on"] == [
-        {"label": f"with {name}", "change": {"radar": name}} for name in ("awr1843", "hupr")
-    ]
+    assert answer.json()["code"] == "no_room"
+    changes = [way["change"] for way in answer.json()["ways_on"]]
+    assert changes == [{"range": [4.0, 6.0]}, *({"radar": name, "range": None} for name in ("awr1843", "hupr"))]
 
 
 @pytest.mark.parametrize(
@@ -419,3 +421,40 @@ def test_live_waits_for_the_page(page: TestClient):
         socket.send_json({"ack": 0})
         third, _ = unpack(socket.receive_bytes())
     assert first["live"]["first_frame"] < second["live"]["first_frame"] < third["live"]["first_frame"]
+
+
+def test_the_arrays_of_a_room_are_complete(page: TestClient):
+    header, arrays = unpack(page.get("/api/room/demo", headers=session(page)).content)
+    assert header["planes"]
+    assert len(arrays["room_points"]) == len(arrays["room_uv"]) > arrays["room_faces"].max()
+    assert Image.open(io.BytesIO(arrays["room_photo"].tobytes()), formats=["JPEG"]).size == (640, 480)
+
+
+@pytest.mark.parametrize("method", ["auto", "physics"])
+def test_rays_of_a_frame_lead_to_the_person(page: TestClient, method: str):
+    own = session(page)
+    header, arrays = generated(page, own, method=method)
+    _, found = unpack(page.get(f"/api/rays/{header['result']}?frame=4", headers=own).content)
+    kind, level_dbm, length_m, _, azimuth_rad, _ = found["ray_facts"].T
+    assert (np.diff(level_dbm) <= 0).all()
+    pelvis_m = arrays["joints"][0, 4, 0]
+    body = kind == 3
+    assert np.median(np.abs(length_m[body] / 2 - np.linalg.norm(pelvis_m))) < 0.4
+    assert abs(np.median(azimuth_rad[body]) - np.arctan2(pelvis_m[0], pelvis_m[1])) < 0.2
+    corners_m = found["ray_points"][kind == 6]
+    sides_m = np.linalg.norm(np.diff(corners_m, axis=1), axis=-1).sum(axis=1)  # there, over the room, and back
+    np.testing.assert_allclose(sides_m, length_m[kind == 6], rtol=1e-3)
+    assert page.get(f"/api/rays/{header['result']}?frame=99", headers=own).status_code == 422
+
+
+def test_a_landmark_and_a_range_window_belong_to_the_request(page: TestClient):
+    own = session(page)
+    wants_door = {**WALK, "text": ["a person walks to the door"]}
+    answer = page.post("/api/generate", json=wants_door, headers=own)
+    assert answer.json()["code"] == "no_target"
+    assert answer.json()["ways_on"][0]["change"] == {"landmark": "door"}
+    more = {"landmark": ["door=0.6,2.4"], "range": [0.7, 4.5]}
+    header, _ = generated(page, own, **{**wants_door, **more})
+    assert math.dist(header["meta"]["person"]["ends_at_m"], (0.6, 2.4)) < 1.2
+    assert 4.4 < header["range_m"][1] < 4.6
+    assert "--landmark=door=0.6,2.4 --range 0.7,4.5" in header["command"]

@@ -18,6 +18,7 @@ from mmweaver.core.registry import Registry
 from mmweaver.core.stages import Stages
 from mmweaver.propagation.board_effects import built_radar
 from mmweaver.propagation.diffuse_clutter import seed_of_room
+from mmweaver.propagation.paths import ScenePaths
 from mmweaver.propagation.ray_traced import ASSUMPTIONS, SEVERAL_PEOPLE, Simulator
 from mmweaver.propagation.static_paths import ALL_PATHS, Propagation, RayTracedRoom
 from mmweaver.signal.cube import radar_cube
@@ -152,6 +153,30 @@ class Physics:
             ),
         )
 
+    def paths(
+        self,
+        scene: Scene,
+        poses: tuple[PoseSequence, ...],
+        config: RadarConfig,
+        *,
+        frame: int,
+        seed: int,
+        background: RadarCube | None = None,
+        board: Board | None = None,
+    ) -> ScenePaths:
+        """The propagation paths of one frame, for a signal that this method made; arguments as in `Method`.
+
+        Args:
+            scene: The room.
+            poses: Motion of each person.
+            config: The radar.
+            frame: Number of the frame.
+            seed: Seed of the signal.
+            background: Background recording of the signal.
+            board: Board of the signal.
+        """
+        return self._prepared.get(scene, config, background, board).paths(poses, frame, seed)
+
     def _prepare(
         self, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None
     ) -> Simulator:
@@ -225,6 +250,26 @@ class Learned:
         assumptions = (note, *order, *moved, *several, *_background_notes(room.background))
         name = "weaver" if self._target is None else f"hypernetwork, target {self._target}"
         return Signal(cube=cube, adc=adc, assumptions=assumptions, method=name)
+
+    def paths(
+        self,
+        scene: Scene,
+        poses: tuple[PoseSequence, ...],
+        config: RadarConfig,
+        *,
+        frame: int,
+        seed: int,
+        background: RadarCube | None = None,
+        board: Board | None = None,
+    ) -> ScenePaths:
+        """The propagation paths of one frame, see `Physics.paths`."""
+        from mmweaver.models.frame_motion import FrameMotion
+        from mmweaver.models.neural_path_solver import LearnedRoom
+
+        room = self._encoded.get(scene, config, background, board)
+        if not isinstance(room, LearnedRoom):
+            raise InputError("weights of --target signal give no propagation paths; take those of a scatterer network")
+        return room.paths([FrameMotion.of(pose, config, 1, frame) for pose in poses])
 
     def _encode(
         self, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None

@@ -176,10 +176,10 @@ class LearnedRoom:
         """Paths of the room and of all people, who occlude the room and each other.
 
         Args:
-            motions: Motion of each person; at least one.
+            motions: Motion of each person; none gives one frame of the empty room.
         """
         with torch.inference_mode(), one_thread():
-            return self._paths(motions)
+            return self._paths(motions) if motions else self._empty_room_paths(1)
 
     def _paths(self, motions: Sequence[FrameMotion], first_frame: int = 0) -> ScenePaths:
         if not motions:

@@ -301,6 +301,18 @@ class Simulator:
         assert self.board is not None
         return torch.from_numpy(self.board.drift(frames, seed)).float()[:, None, None, None] * self._drift_rate
 
+    def paths(self, poses: tuple[PoseSequence, ...], frame: int, seed: int) -> ScenePaths:
+        """Propagation paths of one frame of a signal.
+
+        Args:
+            poses: Motion of each person; may be empty.
+            frame: Number of the frame.
+            seed: Seed of the signal.
+        """
+        bodies = [body_of(one) for one in poses]
+        micro_motions = [MicroMotion(one.subject, seed, MicroMotionSettings()) for one in poses]
+        return self._people(poses, bodies, micro_motions, np.array([frame])).scene(1)
+
     def _people(
         self,
         poses: tuple[PoseSequence, ...],

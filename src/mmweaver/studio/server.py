@@ -213,7 +213,13 @@ class StudioServer:
         """API by path: functions from a session and the request's JSON to bytes for the page, or JSON."""
         service = self.service
         return {
-            "room/{name}": ("GET", lambda own, got: service.room_bytes(own, got["name"], got.get("radar", "awr1843"))),
+            "room/{name}": (
+                "GET",
+                lambda own, got: service.room_bytes(
+                    own, got["name"], got.get("radar", "awr1843"), got.get("range", "")
+                ),
+            ),
+            "rays/{name}": ("GET", lambda own, got: service.rays(own, got["name"], got.get("frame", "0"))),
             "generate": ("POST", lambda own, got: service.generate(own, got["body"])),
             "depth/{name}": ("POST", lambda own, got: uploads.room_with_estimated_depth(own, got["name"])),
             "recording/{name}": ("POST", lambda own, got: service.recording(own, got["name"])),
@@ -289,8 +295,10 @@ class StudioServer:
         try:
             await self._stream(socket, session)
         except (InputError, BusyError) as error:
+            code = getattr(error, "code", "busy")
             with contextlib.suppress(WebSocketDisconnect, RuntimeError):  # it may have been closed
-                await socket.send_json({"error": _public(error) or "too many are waiting; try again in a minute"})
+                words = _public(error) or "too many are waiting; try again in a minute"
+                await socket.send_json({"error": words, "code": code})
                 await socket.close()
         except WebSocketDisconnect:
             pass
@@ -389,7 +397,9 @@ def _packed(content: bytes) -> Response:
 
 async def _refused(_: Request, error: Exception) -> Response:
     recovery_options: list[Any] = getattr(error, "recovery_options", [])
-    return JSONResponse({"error": _public(error), "ways_on": recovery_options}, status_code=422)
+    code = getattr(error, "code", InputError.code)
+    words = {"error": " ".join(_public(error).split()), "code": code, "ways_on": recovery_options}
+    return JSONResponse(words, status_code=422)
 
 
 async def _gone(_: Request, __: Exception) -> Response:
@@ -401,7 +411,7 @@ async def _late(_: Request, __: Exception) -> Response:
 
 
 async def _busy(_: Request, __: Exception) -> Response:
-    return JSONResponse({"error": "too many are waiting; try again in a minute"}, status_code=503)
+    return JSONResponse({"error": "too many are waiting; try again in a minute", "code": "busy"}, status_code=503)
 
 
 class _Announcing(uvicorn.Server):

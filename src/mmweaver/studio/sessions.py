@@ -18,11 +18,12 @@ from time import monotonic
 from typing import Any
 
 from mmweaver.core.board import Board
-from mmweaver.core.errors import InputError
+from mmweaver.core.errors import InputError, error_code
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud, PoseSequence, RadarCube
 from mmweaver.core.staging import staging_path, sweep
 from mmweaver.motion.mocap.clip import MotionClip
+from mmweaver.propagation.rays import Rays
 from mmweaver.viz.points_playback import point_log_playback
 from mmweaver.viz.sequence import Playback, make_playback
 from mmweaver.weaver.generation import Generation, Room
@@ -60,6 +61,7 @@ class Result:
     frame_period_s: float = 0.1
     radar: str = ""
     generation: Generation | None = None
+    rays: Callable[[int], Rays] | None = None  # propagation paths of a frame
     with_samples: Callable[[], Generation] | None = None  # generates the same sequence with its ADC samples
 
     @property
@@ -164,7 +166,8 @@ class Session:
             InputError: If it is not of this session, or no longer kept.
         """
         if name not in self.results:
-            raise InputError("this result is no longer kept; generate it again")
+            with error_code("gone"):
+                raise InputError("this result is no longer kept; generate it again")
         return self.results[name]
 
     def keep(self, name: str) -> dict[str, str]:
@@ -245,7 +248,8 @@ class Sessions:
         """
         session = self._open.get(name)
         if session is None:
-            raise InputError("this session has ended; load the page again")
+            with error_code("session"):
+                raise InputError("this session has ended; load the page again")
         session.used_s = monotonic()
         return session
 

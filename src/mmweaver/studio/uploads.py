@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.core.board import read_board
-from mmweaver.core.errors import InputError
+from mmweaver.core.errors import InputError, error_code
 from mmweaver.core.optional_packages import is_installed
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_text import parse_json, read_json
@@ -22,6 +22,7 @@ from mmweaver.weaver.generation import Room
 
 MAX_BYTES = 300_000_000  # of one upload
 MAX_FILES = 200
+NO_DEPTH = "photo_without_depth"  # code of the error
 MAX_DEPTH = 4  # folders within one another
 MAX_NAME_CHARACTERS, MAX_NAME_BYTES = 80, 200
 PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".heic")
@@ -30,6 +31,7 @@ MOTIONS = (".npz", ".npy")
 MESHES = (".glb", ".ply", ".obj")
 
 
+@error_code("upload")
 def take(session: Session, folder: Path, radar: RadarConfig) -> dict[str, Any]:
     """Interprets the files of a folder, and adds the result to a session.
 
@@ -146,9 +148,11 @@ def _drop_depth(session: Session, photo: Path) -> RecoverableError:
     session.bring(session.photos, name, photo)
     said = "a photo alone is not enough: bring its depth too (depth.png in millimetres, or .npy in metres)"
     if not is_installed("transformers"):
-        return RecoverableError(f"{said}; or pip install 'mmweaver[pretrained]', and a model will estimate it", [])
+        return RecoverableError(
+            f"{said}; or pip install 'mmweaver[pretrained]', and a model will estimate it", [], NO_DEPTH
+        )
     button = {"label": "estimate the depth (model downloaded once)", "change": {"estimate": name}}
-    return RecoverableError(said, [button])
+    return RecoverableError(said, [button], NO_DEPTH)
 
 
 def _photographed(session: Session, files: RoomFiles) -> dict[str, Any]:

@@ -40,6 +40,7 @@ from mmweaver.motion.mocap.read_motion import read_motion
 from mmweaver.motion.multi_person import compose_people
 from mmweaver.motion.people import subject_of
 from mmweaver.motion.planning.placement import Conditions
+from mmweaver.propagation.rays import Rays
 from mmweaver.propagation.static_paths import ALL_PATHS
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from, unseen_notes
 from mmweaver.signal.detection import check_points, detect, needs_adc
@@ -288,6 +289,36 @@ class Weaver(RoomReader):
             people = compose_request(request, room.scene) if people is None else people
         results = [self._recorded(request, replace(room, scene=scene), people, stages) for scene in scenes]
         return replace(results[0], further=tuple(results[1:]))
+
+    @single_precision()
+    def rays(self, room: Room, generation: Generation, frame: int) -> Rays:
+        """The propagation paths of one frame of a signal: their corners in the room, kind, level and cell.
+
+        Args:
+            room: The room that the signal was generated in.
+            generation: A signal of this Weaver.
+            frame: Number of the frame.
+
+        Raises:
+            InputError: If the method does not give its paths, or there is no such frame.
+        """
+        paths_of: Any = getattr(self.method, "paths", None)
+        if paths_of is None:
+            raise InputError(f"method {self.method_name!r} does not give its propagation paths")
+        if not 0 <= frame < len(generation.cube.values):
+            raise InputError(f"frame is 0 to {len(generation.cube.values) - 1}, not {frame}")
+        scene = generation.scene
+        paths = paths_of(
+            scene,
+            generation.motions,
+            generation.cube.config,
+            frame=frame,
+            seed=generation.meta["seed"],
+            background=room.background,
+            board=None if generation.board.is_ideal else generation.board,
+        )
+        joints_m = np.concatenate([np.zeros((0, 3)), *(pose.joints_m[frame] for pose in generation.poses)])
+        return Rays.of(paths, joints_m, scene.planes)
 
     def _recorded(self, request: ParsedRequest, room: Room, people: tuple[Motion, ...], stages: Stages) -> Generation:
         """The signal of one radar; `room` is in its coordinates, the people in the camera's."""

@@ -25,6 +25,7 @@ from mmweaver.motion.planning.targets import SHORTEST_PATH_M
 from mmweaver.motion.register_activity import load_activity_plugins
 from mmweaver.weaver.request import Request
 
+MAX_CORNERS = 1000  # of a path
 MAX_FRAMES = 2000
 NEAREST_PERSON_M = 0.5  # for radars whose range window begins at 0
 FPS_LIMITS = (0.1, 1000.0)
@@ -233,6 +234,8 @@ def parsed_text(text: str) -> MotionPlan:
 
 def _along(plan: MotionPlan | None, path_m: Sequence[Place]) -> MotionPlan:
     """The plan with its first walk along a path; InputError if it has no walk, or the path is not valid."""
+    if len(path_m) > MAX_CORNERS:
+        raise InputError(f"a path has at most {MAX_CORNERS} points, not {len(path_m)}")
     points = tuple((float(x), float(y)) for x, y in path_m)
     if len(points) < 2 or not all(math.isfinite(value) for point in points for value in point):
         raise InputError("a path has at least two points, x and y in metres, such as '0,3 0,1.5 0.8,1.5'")

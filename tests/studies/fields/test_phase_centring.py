@@ -7,7 +7,7 @@ from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import AdcCube
 from mmweaver.signal.cube import radar_cube
 from studies.fields.finer_radar import centred, centring_phasor
-from tests.cubes import point_adc, point_cube
+from tests.cubes import point_cube
 
 
 def turn_per_bin_rad(values: np.ndarray, axis: int) -> float:
