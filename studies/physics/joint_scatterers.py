@@ -6,10 +6,10 @@ import torch
 from mmweaver.core.records import AdcCube, PoseSequence
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import NUM_JOINTS
-from mmweaver.motion.micro_motion import MicroMotion, MicroMotionSettings
+from mmweaver.motion.physiology import Physiology, PhysiologySettings
 from mmweaver.propagation.antenna import pattern, scatterer_gain
 from mmweaver.propagation.paths import ApparentPoint, Paths, ScenePaths
-from mmweaver.propagation.ray_traced import Simulator, add_micro_motion
+from mmweaver.propagation.ray_traced import Simulator, add_physiology
 from mmweaver.propagation.receiver import Receiver
 from mmweaver.propagation.visible_body import motion_through
 
@@ -22,7 +22,7 @@ def run_joints(
     *,
     num_frames: int,
     seed: int,
-    motions: MicroMotionSettings,
+    motions: PhysiologySettings,
     brighter: float = 1.0,
 ) -> AdcCube:
     """ADC samples of the room and a person of 22 isotropic points; `brighter` multiplies their cross section.
@@ -31,8 +31,8 @@ def run_joints(
     """
     frames = np.arange(num_frames)
     nodes_m, _ = simulator.trace(pose, num_frames=num_frames, seed=seed)
-    unrest = MicroMotion(pose.subject, seed, motions)
-    joints_m, _ = add_micro_motion(unrest, nodes_m.astype(float), frames, simulator.clock, pose.height_m)
+    unrest = Physiology(pose.subject, seed, motions)
+    joints_m, _ = add_physiology(unrest, nodes_m.astype(float), frames, simulator.clock, pose.height_m)
     phase = np.exp(2j * np.pi * stream(pose.subject, "joint scatterers").random(NUM_JOINTS))
     receiver = Receiver(simulator.config, simulator.impairments, seed)
     middle = joints_m[:, joints_m.shape[1] // 2]  # (frame, joint, 3)
@@ -46,6 +46,6 @@ def run_joints(
     static = simulator.room.paths
     paths = ScenePaths(
         static=static, moving=Paths.direct(torch.from_numpy(each), joints),
-        occluded=torch.zeros(num_frames, len(static), dtype=torch.uint8),
+        occluded=torch.zeros(num_frames, len(static), dtype=torch.float32),
     )  # fmt: skip
     return AdcCube(samples=simulator.samples(paths, frames, receiver).numpy(), config=simulator.config, scale=1.0)

@@ -29,7 +29,7 @@ from mmweaver.core.firmware_settings import FIRMWARE, FirmwareSettings
 from mmweaver.core.presets import IWR1443_MARS
 from mmweaver.core.records import AdcCube, PointCloud
 from mmweaver.core.seeding import stream
-from mmweaver.motion.micro_motion import STILL, MicroMotionSettings
+from mmweaver.motion.physiology import STILL, PhysiologySettings
 from mmweaver.propagation.board_effects import BoardEffects
 from mmweaver.propagation.body_model import ScatteringBody
 from mmweaver.propagation.ray_traced import Simulator
@@ -75,7 +75,7 @@ class MarsVariant:
     impairments: Impairments = Impairments()  # noqa: RUF009 (frozen)
     brighter_db: float = 0.0
     skin: SkinEcho = SkinEcho()  # noqa: RUF009 (frozen)
-    motions: MicroMotionSettings = MicroMotionSettings()  # noqa: RUF009 (frozen)
+    motions: PhysiologySettings = PhysiologySettings()  # noqa: RUF009 (frozen)
     has_floor: bool = True
     wall_m: float | None = None
     has_ghosts: bool = True

@@ -21,7 +21,7 @@ from mmweaver.core.records import PointCloud, PoseSequence, RadarCube
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.language.timing import plan_motion
-from mmweaver.motion.micro_motion import STILL
+from mmweaver.motion.physiology import STILL
 from mmweaver.motion.multi_person import compose_people
 from mmweaver.propagation.ray_traced import Simulator
 from mmweaver.propagation.static_paths import ALL_PATHS

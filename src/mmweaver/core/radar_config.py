@@ -26,6 +26,7 @@ RARE_FIELDS = (
     "lvds_iq_order",
     "rx_channels",
     "rx_inverted",
+    "antenna_pattern",
     "frame_words_before",
     "frame_words_after",
 )
@@ -69,6 +70,8 @@ class RadarConfig:
     rx_gain_db: float = 30.0
     azimuth_beamwidth_deg: float = 56.0
     elevation_beamwidth_deg: float = 28.0
+    # rows of azimuth and elevation in degrees and gain in dB, a grid or two cuts; () = falls with the beamwidths
+    antenna_pattern: tuple[tuple[float, float, float], ...] = ()
     adc_full_scale_v: float = 0.5
     frequency_limits_hz: tuple[float, float] = (57.0e9, 81.5e9)
     loop_gap_s: float = 0.0  # pause between the last chirp of a loop and the next loop

@@ -4,6 +4,8 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from mmweaver.core.antenna_tables import pattern_grid
+
 if TYPE_CHECKING:
     from mmweaver.core.radar_config import RadarConfig
 
@@ -94,6 +96,11 @@ def _array_problems(config: "RadarConfig") -> Iterator[str]:
         yield f"rx_channels {config.rx_channels} must name each of its {config.num_rx} receivers once"
     if not set(config.rx_inverted) <= set(range(config.num_rx)):
         yield f"rx_inverted {config.rx_inverted} names receivers that it does not have"
+    if config.antenna_pattern:
+        try:
+            pattern_grid(config.antenna_pattern)
+        except ValueError as error:
+            yield str(error)
     if min(config.frame_words_before, config.frame_words_after) < 0:
         yield "words of a frame cannot be negative"
 

@@ -8,6 +8,7 @@ from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.propagation.diffuse_clutter import diffuse_clutter, seed_of_room
 from mmweaver.propagation.paths import Interaction, StaticPaths
 from mmweaver.propagation.static_paths import ALL_PATHS, Propagation, RayTracedRoom
+from mmweaver.propagation.things import ThingPaths, reflector_paths
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -16,7 +17,8 @@ class GivenRoom:
 
     view: SceneTensors
     traced: RayTracedRoom
-    others: StaticPaths  # of second order, and clutter
+    others: StaticPaths  # of second order, clutter, and reflectors
+    things: ThingPaths
 
     @classmethod
     def of(
@@ -33,5 +35,8 @@ class GivenRoom:
         traced = RayTracedRoom(scene, config, seed, propagation)
         others = [traced.paths.select(Interaction.ROOM_ROOM)]
         if propagation.clutter:
-            others.append(diffuse_clutter(config, seed_of_room(scene) + seed))
-        return cls(view=SceneTensors.of(scene, config, traced), traced=traced, others=StaticPaths.cat(others))
+            others.append(diffuse_clutter(config, seed_of_room(scene) + seed, scene))
+        if scene.reflectors:
+            others.append(reflector_paths(scene.reflectors, scene.radar_pose, config))
+        things = ThingPaths(scene, config)
+        return cls(things=things, view=SceneTensors.of(scene, config, traced), traced=traced, others=StaticPaths.cat(others))

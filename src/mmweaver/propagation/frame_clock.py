@@ -14,10 +14,17 @@ BLOCK_S = 2.5e-3  # range is linear in time within a block; array phases are int
 
 @dataclass(frozen=True, kw_only=True)
 class FadedSegment:
-    """A segment that reaches to the middles of its neighbours, with a weight per chirp; all weights add up to 1."""
+    """A segment that reaches to the middles of its neighbours, with a weight per chirp; all weights add up to 1.
+
+    Where frames follow each other without a pause, the last segment of the frame before and the first of the frame
+    after reach into a frame, too.
+    """
 
     segment: "Segment"
     share: np.ndarray  # (loop, tx) from 0 to 1
+    source: int  # number of the segment within its frame
+    frame: int = 0  # -1, 0 or 1: its frame relative to the one into which it reaches
+    late_s: float = 0.0  # its middle minus that of the nearest segment of the frame itself
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,16 +108,30 @@ class FrameClock:
         Where motion and amplitude are known per segment only, paths jump from one segment to the next. A jump leaves
         spurs over all velocities; a smooth transition does not.
         """
-        middle_s = self.middle_s
-        before, after = (np.append(-np.inf, middle_s[:-1]), np.append(middle_s[1:], np.inf))
+        middle_s, period_s, last = self.middle_s, self.config.frame_period_s, len(self.segments) - 1
+        own = [(at, 0, float(one_s)) for at, one_s in enumerate(middle_s)]
+        if self.is_continuous:
+            own = [(last, -1, middle_s[-1] - period_s), *own, (0, 1, middle_s[0] + period_s)]
+        times = np.array([one_s for *_, one_s in own])
+        before, after = (np.append(-np.inf, times[:-1]), np.append(times[1:], np.inf))
         faded = []
-        for own_s, from_s, to_s in zip(middle_s, before, after, strict=True):
+        for (source, frame, own_s), from_s, to_s in zip(own, before, after, strict=True):
             reached = np.flatnonzero(((self.chirp_s > from_s) & (self.chirp_s < to_s)).any(axis=1))
             time_s = self.chirp_s[reached]
             away = np.where(time_s < own_s, (own_s - time_s) / (own_s - from_s), (time_s - own_s) / (to_s - own_s))
             share = np.cos(np.pi / 2 * np.clip(away, 0.0, 1.0)) ** 2
-            faded.append(FadedSegment(segment=self._segment(reached, float(own_s)), share=share))
-        return tuple(faded)
+            late_s = float(own_s - middle_s[{-1: 0, 0: source, 1: last}[frame]])
+            faded.append(
+                FadedSegment(
+                    segment=self._segment(reached, float(own_s)), share=share, source=source, frame=frame, late_s=late_s
+                )
+            )
+        return tuple(one for one in faded if len(one.share))
+
+    @property
+    def is_continuous(self) -> bool:
+        """Whether the pause between frames is so short that motion is continuous over it."""
+        return self.config.frame_period_s - self.config.active_time_s < min(MAX_SEGMENT_S, self.config.active_time_s / 2)
 
     def _segment(self, loops: np.ndarray, middle_s: float | None = None) -> Segment:
         """A run of loops; times are relative to the middle of its chirps, or to `middle_s`."""

@@ -4,7 +4,7 @@ Coordinates are the radar's (x right, y away, z up, origin at the array's centre
 the receiver's port in sqrt(mW), without the phase of the carrier, exp(j 2 pi length / wavelength).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 
 import numpy as np
@@ -28,6 +28,8 @@ class Interaction(IntEnum):
     ROOM_ROOM = 8  # two surfaces of the room, at least one of them rough
     CLUTTER = 9  # something in the room that photo and mesh do not resolve
     BODY_BODY = 10  # two people, one after the other
+    TARGET = 11  # a reflector of known cross section
+    THING = 12  # something that moves but is nobody
 
 
 STATIC_KINDS = (Interaction.DIFFUSE, Interaction.SPECULAR, Interaction.EDGE)  # of first order, as a room has them
@@ -68,6 +70,14 @@ class ApparentPoint(TensorRecord):
         )
         time = time_s[:, None, None]
         return (acceleration * (time**2 / 2)).addcmul_(velocity, time).add_(position)
+
+    def later(self, time_s: float) -> "ApparentPoint":
+        """The same motion about another middle, `time_s` seconds later."""
+        return ApparentPoint(
+            position_m=self.position_m + time_s * self.velocity_mps + time_s**2 / 2 * self.acceleration_mps2,
+            velocity_mps=self.velocity_mps + time_s * self.acceleration_mps2,
+            acceleration_mps2=self.acceleration_mps2,
+        )
 
     @property
     def distance_m(self) -> Tensor:
@@ -177,6 +187,24 @@ class Paths(TensorRecord):
         nothing = np.zeros((0, 3, 3))
         return cls.of(np.zeros(0), nothing, nothing, Interaction.BODY)
 
+    def of_segment(self, source: int, count: int, frame: int = 0, late_s: float = 0.0) -> "Paths":
+        """Paths (frame, path) of one time segment of every frame, or of the frames before or after.
+
+        Where there is no frame before or after, the motion of the nearest segment goes on.
+
+        Args:
+            source: Number of the segment.
+            count: Number of segments per frame.
+            frame: -1, 0 or 1: which frames' segments, relative to every frame.
+            late_s: Middle of the segment minus that of the nearest segment of the frame itself.
+        """
+        rows = self[source::count]
+        if not frame:
+            return rows
+        nearest = self[:1] if frame < 0 else self[-1:]
+        edge = replace(nearest, departure=nearest.departure.later(late_s), arrival=nearest.arrival.later(late_s))
+        return Paths.cat([edge, rows[:-1]]) if frame < 0 else Paths.cat([rows[1:], edge])
+
     def __len__(self) -> int:
         return len(self.amplitude)
 
@@ -250,4 +278,6 @@ class ScenePaths:
 
     static: StaticPaths  # (path,)
     moving: Paths  # (frame * segment, path)
-    occluded: Tensor  # (frame, static path) uint8: 1 where a person occludes the path
+    # (frame + 1, static path): share of a path's amplitude that people take, at the start of each frame and one frame
+    # period later, linear between; or (frame, static path), constant within a frame
+    occluded: Tensor

@@ -7,7 +7,7 @@ import pytest
 
 from mmweaver.core.presets import IWR1443_MARS
 from mmweaver.core.records import PoseSequence
-from mmweaver.motion.micro_motion import STILL
+from mmweaver.motion.physiology import STILL
 from mmweaver.propagation.ray_traced import Simulator
 from mmweaver.propagation.receiver import Impairments
 from mmweaver.signal.cube import radar_cube
