@@ -8,7 +8,7 @@ import torch
 
 from mmweaver.core.boards import AWR1843
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
-from mmweaver.motion.micro_motion import STILL, MicroMotionSettings
+from mmweaver.motion.physiology import STILL, PhysiologySettings
 from mmweaver.propagation.adc_synthesis import AdcSynthesis
 from mmweaver.propagation.antenna import scatterer_gain, specular_gain
 from mmweaver.propagation.cube_rendering import CubeRenderer
@@ -94,7 +94,7 @@ def test_a_living_person_never_rests():
     """Who stands sways and breathes by millimetres a second: faint against the body, far above nothing."""
     simulator = Simulator(scene_of((floor(),)), AWR1843, IDEAL)
     moving_db = []
-    for motions in (MicroMotionSettings(), STILL):
+    for motions in (PhysiologySettings(), STILL):
         adc = simulator.run(standing_person((0.2, 2.0, -1.2)), num_frames=4, seed=0, motions=motions).adc.samples
         person = adc - simulator.room_adc
         moving = person - person.mean(axis=1, keepdims=True)

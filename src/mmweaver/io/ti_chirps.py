@@ -218,6 +218,7 @@ def radar_from_ti(setup: TiSetup, options: RadarOptions) -> RadarConfig:
         rx_inverted=tuple(at for at, bit in enumerate(receivers) if bit in board.rx_inverted),
         frame_words_before=sum(counts[:index]) * words,
         frame_words_after=sum(counts[index + 1 :]) * words,
+        **dict(board.electrical),
     )
 
 

@@ -38,7 +38,7 @@ class BodyPaths(VisibleBody):
         body: ScatteringBody,
         clock: FrameClock,
         joints_m: np.ndarray,
-        chest_m: np.ndarray | None = None,
+        trunk_m: np.ndarray | None = None,
         hulls: list[RayCaster] | None = None,
         known: Visibility | None = None,
     ):
@@ -49,11 +49,11 @@ class BodyPaths(VisibleBody):
             body: The person's skin points.
             clock: Clock of the radar's frame.
             joints_m: Joints (frame, node, 22, 3) in metres at the clock's nodes.
-            chest_m: Outward displacement of the chest (frame, node) in metres; by default none.
+            trunk_m: Outward displacement of chest and belly (frame, node, 2) in metres; by default none.
             hulls: One occluding mesh per frame, of all people present; by default the body's own.
             known: Visibility of an earlier run, used instead of rays.
         """
-        super().__init__(room, body, BodyAtFrames.of(body, clock, joints_m, chest_m, hulls if known is None else []))
+        super().__init__(room, body, BodyAtFrames.of(body, clock, joints_m, trunk_m, hulls if known is None else []))
         self.known = known
         self.over_faces: list[np.ndarray | None] = [None] * len(room.reflectors)
         self.visible = self._visible()

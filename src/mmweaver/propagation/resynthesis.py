@@ -14,13 +14,13 @@ from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
-from mmweaver.motion.micro_motion import MicroMotion, MicroMotionSettings
+from mmweaver.motion.physiology import Physiology
 from mmweaver.propagation.adc_synthesis import AdcSynthesis
 from mmweaver.propagation.body_model import ScatteringBody
 from mmweaver.propagation.body_paths import BodyPaths
 from mmweaver.propagation.occlusion import Visibility
 from mmweaver.propagation.paths import Paths, ScenePaths
-from mmweaver.propagation.ray_traced import add_micro_motion, leakage_path
+from mmweaver.propagation.ray_traced import add_physiology, leakage_path
 from mmweaver.propagation.receiver import Impairments, Receiver
 from mmweaver.propagation.static_paths import PreparedRoom
 from mmweaver.propagation.static_paths_store import resampled_phases
@@ -96,12 +96,12 @@ class Resynthesis:
         return self._person(self.room, _body(motion.subject, motion.height_m), motion, frames)
 
     def _person(self, room: PreparedRoom, body: ScatteringBody, motion: TracedMotion, frames: np.ndarray) -> BodyPaths:
-        micro_motion = MicroMotion(motion.subject, motion.seed, MicroMotionSettings())
-        joints_m, chest_m = add_micro_motion(
-            micro_motion, motion.joints_m[frames].astype(float), frames, self.synthesis.clock, motion.height_m
+        own = Physiology(motion.subject, motion.seed)
+        joints_m, trunk_m = add_physiology(
+            own, motion.joints_m[frames].astype(float), frames, self.synthesis.clock, motion.height_m
         )
         known = motion.visibility[frames]
-        return BodyPaths(room, body, self.synthesis.clock, joints_m, chest_m, known=known)
+        return BodyPaths(room, body, self.synthesis.clock, joints_m, trunk_m, known=known)
 
     def _room(self, realization: int) -> tuple[PreparedRoom, Tensor, Tensor]:
         key = 1 + realization % ROOM_REALIZATIONS if realization else 0
