@@ -139,7 +139,7 @@ def parse(asked: Request, radar: RadarConfig, *, needs_adc: bool = False) -> Par
         raise InputError(f"give at most {MAX_TARGETS} things and {MAX_TARGETS} reflectors")
     if not 1 <= len(texts) <= MOST_PEOPLE:
         raise InputError(f"give 1 to {MOST_PEOPLE} texts, one for each person, not {len(texts)}")
-    is_empty = _asks_for_nobody(asked)
+    is_empty = _asks_for_nobody(replace(asked, text=list(acts)))
     starts = _starts(asked.at, len(texts))
     check_poses(tuple(asked.radar_poses))
     config = radar if asked.fps is None else replace(radar, frame_period_s=1 / asked.fps)
