@@ -31,7 +31,7 @@ from mmweaver.core.shapes import (
     Vec3,
     Vertices,
 )
-from mmweaver.core.targets import Reflector, Thing
+from mmweaver.core.targets import Interferer, Reflector, Thing
 
 
 # Radar --------------------------------------------------------------------------------------------------------------
@@ -401,6 +401,7 @@ class Scene(ShownByFacts):
     radar_pose: RadarPose = AT_CAMERA  # pose of the radar that defines the frame; the photo is always the camera's
     reflectors: tuple[Reflector, ...] = ()  # in the camera's level frame, as things
     things: tuple[Thing, ...] = ()
+    interferers: tuple[Interferer, ...] = ()
 
     def facts(self) -> dict[str, str]:
         """Sizes, planes, seats and landmarks."""

@@ -115,6 +115,40 @@ class Thing:
         return f"{self.kind}={self.place_m[0]:g},{self.place_m[1]:g}{heading}"
 
 
+@dataclass(frozen=True, kw_only=True)
+class Interferer:
+    """Another FMCW radar that faces the camera, in the same band with chirps of its own.
+
+    Attributes:
+        place_m: (x, y, z) in the camera's level frame.
+        eirp_dbm: Radiated power towards the camera.
+    """
+
+    place_m: tuple[float, float, float]
+    eirp_dbm: float = 22.5
+
+    @classmethod
+    def of_words(cls, words: str) -> "Interferer":
+        """Parses "X,Y,Z" or "X,Y,Z,EIRP_DBM".
+
+        Raises:
+            InputError: If the text does not parse.
+        """
+        values = _numbers(words.split(","))
+        is_known = len(values) in (3, 4) and max(map(abs, values[:3])) <= MAX_PLACE_M and math.hypot(*values[:3]) >= 0.1
+        if not is_known or not -60 <= [*values, 0.0][3] <= 60:
+            raise InputError(
+                f"{words[:60]!r} is no interferer; write X,Y,Z in metres, at least 0.1 m away, and perhaps its EIRP in"
+                " dBm"
+            )
+        return cls(place_m=(values[0], values[1], values[2]), **({"eirp_dbm": values[3]} if len(values) == 4 else {}))
+
+    @property
+    def words(self) -> str:
+        """The interferer in the form that `of_words` reads."""
+        return ",".join(f"{value:g}" for value in (*self.place_m, self.eirp_dbm))
+
+
 @cache
 def thing_rows() -> dict[str, dict[str, Any]]:
     """The rows of things.toml by name."""
@@ -122,8 +156,8 @@ def thing_rows() -> dict[str, dict[str, Any]]:
 
 
 _GOES = (
-    r"(?:(?:is|are|was) )?(?:switched |turned )?(?:on|running|runs?|turning|turns?|spinning|spins?|moving|moves?|walking"
-    r"|walks?|strolling|trotting|passing|passes|driving|drives?|cleaning|cleans?|swaying|sways?|swinging|swings?|blowing|blows?"
+    r"(?:(?:is|are|was) )?(?:switched |turned )?(?:on|running|runs?|turning|turns?|spinning|spins?|moving|moves?"
+    r"|walking|walks?|strolling|trotting|passing|passes|driving|drives?|cleaning|cleans?|swaying|sways?|swinging|swings?|blowing|blows?"
     r"|fluttering|flutters?|opening|opens?|washing|oscillating)"
     r"(?: (?:by|past|around|about|through|slowly|fast|nearby|open|shut|and shut|and closed|and closes"
     r"|in (?:the |a )?(?:room|background|draught|draft|wind|breeze)|next to (?:him|her|them|it)|the (?:room|floor)))*"
@@ -155,6 +189,8 @@ def things_of_text(text: str) -> tuple[str, tuple[str, ...]]:
         while (match := pattern.search(text)) is not None:
             found.append((match.start(), kind))
             text = f"{text[: match.start()]}{text[match.end() :]}"
+    if not found:
+        return text, ()
     return text.strip(" ,"), tuple(kind for _, kind in sorted(found))
 
 

@@ -142,7 +142,7 @@ def _vital_arrays(poses: tuple[PoseSequence, ...], first: Any) -> dict[str, np.n
     each |= {
         name: padded([getattr(one, name) for one in vitals]) for name in ("chest_m", "belly_m", "beat_s", "held_s")
     }
-    return {name: values[first] for name, values in each.items()}
+    return {name: np.asarray(values[first]) for name, values in each.items()}
 
 
 def read_poses_npz(path: str | Path) -> tuple[PoseSequence, ...]:

@@ -160,9 +160,10 @@ class FrameMotion:
         return torch.from_numpy(middle_m[self.num_before :]).float()
 
     def start_joints_m(self, clock: FrameClock) -> Tensor:
-        """Joints at the start of each frame and one frame period after the last start, (frame + 1, 22, 3)."""
+        """Joints at the first node of each frame and one frame period after the last one's, (frame + 1, 22, 3)."""
         joints, velocity = (part[self.num_before :] for part in self.segments(clock))
-        first_s, last_s = float(clock.middle_s[0]), float(clock.config.frame_period_s - clock.middle_s[-1])
+        first_s = float(clock.middle_s[0] - clock.node_s[0])
+        last_s = float(clock.config.frame_period_s + clock.node_s[0] - clock.middle_s[-1])
         starts = joints[:, 0] - velocity[:, 0] * first_s
         return torch.cat([starts, joints[-1:, -1] + velocity[-1:, -1] * last_s])
 

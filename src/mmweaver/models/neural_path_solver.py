@@ -34,6 +34,7 @@ from mmweaver.propagation.board_effects import BoardEffects
 from mmweaver.propagation.body_model import BELLY, CHEST, CHEST_BACK, ScatteringBody
 from mmweaver.propagation.cube_rendering import CubeRenderer
 from mmweaver.propagation.image_method import static_points
+from mmweaver.propagation.interference import interference
 from mmweaver.propagation.mean_power import MeanEchoes, MeanPower
 from mmweaver.propagation.occlusion import occluded, people_shadow
 from mmweaver.propagation.paths import FrameClock, Paths, ScenePaths, StaticPaths
@@ -319,16 +320,22 @@ class LearnedRoom:
             self.renderer.add_static(values, layer - lost[:-1])
             self.renderer.add_ramp(values, lost[:-1] - lost[1:])
             values += torch.from_numpy(noise)
+            interferers, bursts = self.given.scene.interferers, None
+            if interferers:
+                bursts = interference(interferers, self.given.scene.radar_pose, self.nominal, frames, seed)
+                values += torch.from_numpy(cube_values(bursts, self.config))
             cube = RadarCube(values=values.numpy(), grid=grid, config=self.nominal, scale=1.0)
-            adc = self._adc(paths, replace(cube, values=noise), seed, first_frame) if keep_adc else None
+            adc = self._adc(paths, replace(cube, values=noise), seed, first_frame, bursts) if keep_adc else None
         unit = 1.0 if self.background is None else self.background.unit
         if unit == 1.0:
             return cube, adc
         cube = replace(cube, values=cube.values / np.float32(unit), scale=unit)
         return cube, None if adc is None else replace(adc, samples=adc.samples / np.float32(unit), scale=unit)
 
-    def _adc(self, paths: ScenePaths, noise: RadarCube, seed: int, first_frame: int) -> AdcCube:
-        """ADC samples of the paths, with noise whose cube is `noise` and which is white outside the cube's cells."""
+    def _adc(
+        self, paths: ScenePaths, noise: RadarCube, seed: int, first_frame: int, bursts: np.ndarray | None
+    ) -> AdcCube:
+        """ADC samples of the paths and of interference, with noise whose cube is `noise`, white outside its cells."""
         config = self.config
         if self._synthesis is None:
             synthesis = AdcSynthesis(config, board=self.board, is_faded=True)
@@ -351,6 +358,7 @@ class LearnedRoom:
             if self.board is not None:
                 clean[:, 0, self.board.first_slot] *= self.board.first_chirp
             clean = clean.numpy() + self._sample_noise(noise.values[some], first_frame + first, seed)
+            clean = clean if bursts is None else clean + bursts[some]
             samples[some] = clean if config.complex_samples else np.real(clean)
         count_sqrt_mw = config.adc_count_sqrt_mw if self.background is None else self.background.count_sqrt_mw
         quantise(torch.from_numpy(samples), count_sqrt_mw)

@@ -182,6 +182,7 @@ class GivenRoom:
     traced: RayTracedRoom
     others: StaticPaths  # of second order, clutter, and reflectors
     things: ThingPaths
+    scene: Scene
 
     @classmethod
     def of(
@@ -203,5 +204,9 @@ class GivenRoom:
             others.append(reflector_paths(scene.reflectors, scene.radar_pose, config))
         things = ThingPaths(scene, config)
         return cls(
-            things=things, view=SceneTensors.of(scene, config, traced), traced=traced, others=StaticPaths.cat(others)
+            scene=scene,
+            things=things,
+            view=SceneTensors.of(scene, config, traced),
+            traced=traced,
+            others=StaticPaths.cat(others),
         )

@@ -43,6 +43,8 @@ BELLY_SHARE = {"lying": 1.0, "seated": 0.9, "standing": 0.6}
 INHALE, EXHALE = 0.40, 0.48  # shares of a breath; the rest is the pause after exhaling
 PACED = 0.2  # variation of a stated rate relative to that of spontaneous breathing
 HOLD_RAMP_S = 0.6  # in which breathing stops and starts again
+# harmonics of a heartbeat's displacement, amplitude and phase: its recoil fills 3 to 5 Hz, as in recordings of sitters
+PULSE, PULSE_EXTENT = ((1.0, 0.0), (0.7, 0.6), (0.5, 1.2), (0.35, 2.0), (0.2, 2.8)), 3.82
 ARRHYTHMIA, SLOW_HEART = 0.03, 0.03  # relative variation of the heart rate with the breath, and at 0.1 Hz
 
 
@@ -64,7 +66,7 @@ class PhysiologySettings:
     waver_m: float = 0.15e-3
     tremor_m: float = 0.08e-3
     breath_m: float = 6.0e-3
-    heart_m: float = 0.3e-3
+    heart_m: float = 0.35e-3
     breath_variation: float = 0.04
     depth_variation: float = 0.15
 
@@ -227,8 +229,8 @@ class Physiology:
     def heart_m(self, time_s: np.ndarray) -> np.ndarray:
         """Displacement (time,) of the chest by the heartbeat in metres: a pulse with a rebound after each beat."""
         beat = 2 * np.pi * self.heart_phase(time_s)
-        wave = np.sin(beat) + 0.6 * np.sin(2 * beat + 0.6) + 0.25 * np.sin(3 * beat + 1.2)
-        return self.settings.heart_m * self.size[3] / 2.6 * wave
+        wave = sum(size * np.sin(order * beat + turn) for order, (size, turn) in enumerate(PULSE, 1))
+        return self.settings.heart_m * self.size[3] / PULSE_EXTENT * np.asarray(wave)
 
     def truth(self, joints_m: np.ndarray, time_s: np.ndarray, height_m: float, until_s: float) -> VitalTruth:
         """Ground truth over the frames of a signal.

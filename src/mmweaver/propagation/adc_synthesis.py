@@ -183,7 +183,7 @@ class AdcSynthesis:
         if len(lost) == len(samples):
             samples -= lost[:, None]
             return
-        late = self.clock.chirp_s.mean(axis=1) / self.config.frame_period_s
+        late = (self.clock.chirp_s.mean(axis=1) - self.clock.node_s[0]) / self.config.frame_period_s
         late = torch.from_numpy(late.astype(np.float32)).to(lost)[:, None, None, None]
         for frame, before, after in zip(samples, lost[:-1], lost[1:], strict=True):
             frame -= torch.lerp(before[None], after[None], late)

@@ -132,12 +132,11 @@ class BodyPaths(VisibleBody):
         to_corner = (corner - place) / np.maximum(length_m - leg_m, 1e-6)[..., None]
         cos = np.clip((normal * to_corner).sum(-1), -1, 1)  # undefined where skin touches the face
         taper = face.inside(corner, fresnel_radius_m(leg_m, length_m - leg_m, self.config.wavelength_m))
-        cos_face = np.abs(to_corner @ face.plane.normal)
         seen = (cos > 0.02) & (face.side(place) > 0.02) & (taper > 0.02) & (length_m < 2 * self.config.max_range_m)
         if not seen.any():
             return []
         most = min(GHOST_SLAB_ECHOES, self.room.propagation.slab_echoes)
-        slab = face.echoes(cos_face, self.config.centre_frequency_hz, most)
+        slab = face.echoes(to_corner, self.config.centre_frequency_hz, most)
         over = self.gain * self.pattern(corner / np.maximum(leg_m, 1e-6)[..., None]) / length_m * taper
         micro = self.body.micro_phase[chosen]
         direct = self.pattern(-self.towards[:, chosen]) / self.distance_m[:, chosen]

@@ -108,7 +108,8 @@ class CubeRenderer:
             static = torch.fft.fft(by_antenna, dim=0) * compensation
         self.static_bins = torch.nonzero(static.abs().amax(dim=1) > 1e-6)[:, 0]  # a Hann window has three
         self._static_doppler = static[self.static_bins]
-        late = torch.from_numpy((self.clock.chirp_s.mean(axis=1) / config.frame_period_s).astype(np.float32))
+        late_s = self.clock.chirp_s.mean(axis=1) - self.clock.node_s[0]
+        late = torch.from_numpy((late_s / config.frame_period_s).astype(np.float32))
         self._ramp_doppler = torch.fft.fft(weight * late)[:, None] * compensation  # of what grows by 1 per frame
         fourier = torch.fft.fft(torch.eye(config.num_loops, dtype=torch.complex64)) * weight[:, None]  # (loop, doppler)
         by_tx = fourier * compensation[:, :: config.num_rx].T[:, None]  # (tx, loop, doppler)

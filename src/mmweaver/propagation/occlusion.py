@@ -52,22 +52,22 @@ MAX_FLESH_M = 0.2  # maximum distance from bone to skin
 SHADOW_M = 0.3  # how far outside the skin the shadow is followed,
 LEAST_LOST = 0.02  # where less than this share of the field is lost
 BEHIND_M, EASE_M = 0.1, 0.05  # minimum distance behind the body of what it occludes, and over which the shadow sets in
+RAYS_M = 1e-9  # a wavelength without diffraction
 FRAMES_AT_ONCE = 5  # fit into the cache
 CORNERS = 0.93  # mean over outer radius of a hexagon: the ray tracer's bodies occlude by six-sided hulls
 
 
-def occluded(ends_m: Tensor, joints_m: Tensor, wavelength_m: float = 3.8e-3) -> Tensor:
-    """Whether a body blocks the line of sight from the radar to places: takes more than half of the field.
+def occluded(ends_m: Tensor, joints_m: Tensor) -> Tensor:
+    """Whether a body blocks the line of sight from the radar to places: its shadow without diffraction.
 
     Args:
         ends_m: Places (path, 3) in metres, or (frame, path, 3).
         joints_m: Joints (frame, 22, 3) in metres.
-        wavelength_m: Wavelength in metres.
 
     Returns:
         Bool (frame, path), on the device of the joints.
     """
-    return shadow(ends_m, joints_m, wavelength_m) > 0.5
+    return shadow(ends_m, joints_m, RAYS_M) > 0.5
 
 
 def shadow(ends_m: Tensor, joints_m: Tensor, wavelength_m: float) -> Tensor:

@@ -433,6 +433,6 @@ class ScenePaths:
 
     static: StaticPaths  # (path,)
     moving: Paths  # (frame * segment, path)
-    # (frame + 1, static path): share of a path's amplitude that people take, at the start of each frame and one frame
-    # period later, linear between; or (frame, static path), constant within a frame
+    # (frame + 1, static path): share of a path's amplitude that people take, at the first node of each frame and one
+    # frame period later, linear between; or (frame, static path), constant within a frame
     occluded: Tensor

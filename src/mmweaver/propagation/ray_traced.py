@@ -27,6 +27,7 @@ from mmweaver.propagation.body_paths import BodyPaths
 from mmweaver.propagation.cube_rendering import CubeRenderer
 from mmweaver.propagation.diffuse_clutter import diffuse_clutter
 from mmweaver.propagation.image_method import static_points
+from mmweaver.propagation.interference import interference
 from mmweaver.propagation.mean_power import MeanPower
 from mmweaver.propagation.occlusion import Visibility, people_shadow
 from mmweaver.propagation.paths import FrameClock, Interaction, Paths, ScenePaths, StaticPaths
@@ -178,7 +179,7 @@ class Simulator:
         if scene.reflectors:
             reflectors = reflector_paths(scene.reflectors, scene.radar_pose, built)
             self.room.paths = StaticPaths.cat([self.room.paths, reflectors])
-        self.things = ThingPaths(scene, built)
+        self.things, self.interferers = ThingPaths(scene, built), scene.interferers
         if self.board is not None:
             self.room.paths = self.board.recorded_static(self.room.paths)
         self.background: BackgroundRecording | None = None
@@ -302,6 +303,9 @@ class Simulator:
                 moving = self.board.recorded_moving(moving, frames, receiver.seed)
             samples = self.synthesis.moving(moving)
             self.synthesis.subtract_occluded(samples, paths)
+            if self.interferers:
+                own = interference(self.interferers, self.radar_pose, self.config, frames, receiver.seed)
+                samples += torch.from_numpy(own)
             return receiver.receive(samples, static, self._static_rate, frames.tolist())
 
     def _drifted(self, frames: np.ndarray, seed: int) -> torch.Tensor:
@@ -317,7 +321,7 @@ class Simulator:
         frames: np.ndarray,
     ) -> PeoplePaths:
         joints_m, trunks_m, starts_m = [], [], []
-        start_s = np.append(frames, frames[-1] + 1) * self.config.frame_period_s
+        start_s = np.append(frames, frames[-1] + 1) * self.config.frame_period_s + self.clock.node_s[0]
         for pose, own in zip(poses, living, strict=True):
             level_m = self.radar_pose.in_level_frame(self._joints_at_nodes(pose, frames))
             joints, trunk = add_physiology(own, level_m, frames, self.clock, pose.height_m)

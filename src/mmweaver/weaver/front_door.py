@@ -220,6 +220,7 @@ class Weaver(RoomReader):
             board: Board whose errors the signal has: "typical" (sampled by the seed; the default, except with a
                 background, whose board is used), "typical:N", "ideal", a board.json or a `Board` (docs/board.md).
             reflectors: Each a `Reflector` of known cross section (docs/things.md).
+            interferers: Each an `Interferer`, another radar.
             things: Each a `Thing` that moves but is nobody: fan, curtain, door, cat ... (docs/things.md).
             radar_poses: One `RadarPose` per radar that records the scene (default: one at the camera).
 
@@ -329,8 +330,7 @@ class Weaver(RoomReader):
         things = ThingPaths(room.scene, request.config).truth(time_s)
         if things:
             meta["things"] = [{"kind": one.kind, "starts_at_m": one.place_m[0], **one.facts} for one in things]
-        if room.scene.reflectors:
-            meta["reflectors"] = room.scene.reflectors
+        meta |= {name: one for name in ("reflectors", "interferers") if (one := getattr(room.scene, name))}
         return Generation(
             things=things,
             cube=signal.cube,
@@ -414,7 +414,7 @@ def with_targets(room: Room, request: ParsedRequest) -> Room:
     Raises:
         InputError: For reflectors in front of a background recording, which does not hold them.
     """
-    if not request.things and not request.reflectors:
+    if not request.things and not request.reflectors and not request.interferers:
         return room
     if request.reflectors and room.background is not None:
         raise InputError("a background recording has its own echoes; leave out --reflector or --background")
@@ -424,7 +424,8 @@ def with_targets(room: Room, request: ParsedRequest) -> Room:
         taken = [one.place_m for one in (*things, *request.things) if one.place_m is not None]
         place = thing.place_m or free_place(room.scene, request.range_window_m, seed, taken)
         things.append(replace(thing, place_m=place, seed=seed))
-    return replace(room, scene=replace(room.scene, things=tuple(things), reflectors=request.reflectors))
+    targets = {"things": tuple(things), "reflectors": request.reflectors, "interferers": request.interferers}
+    return replace(room, scene=replace(room.scene, **targets))
 
 
 def free_place(

@@ -12,7 +12,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.options import Place
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import RadarPose, check_poses
-from mmweaver.core.targets import MAX_TARGETS, Reflector, Thing, things_of_text
+from mmweaver.core.targets import MAX_TARGETS, Interferer, Reflector, Thing, things_of_text
 from mmweaver.io.result_folder import radar_meta
 from mmweaver.motion.empty_floor import NOBODY, says_nobody
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, MotionPlan
@@ -63,6 +63,7 @@ class ParsedRequest:
     radar_poses: tuple[RadarPose, ...] = ()  # none: one radar at the camera
     reflectors: tuple[Reflector, ...] = ()
     things: tuple[Thing, ...] = ()
+    interferers: tuple[Interferer, ...] = ()
 
     @property
     def duration_s(self) -> float:
@@ -133,12 +134,12 @@ def parse(asked: Request, radar: RadarConfig, *, needs_adc: bool = False) -> Par
     if asked.seed < 0:
         raise InputError(f"the seed must be 0 or above, not {asked.seed}")
     texts, motion = asked.sentences, asked.motion
+    if not 1 <= len(texts) <= MOST_PEOPLE:
+        raise InputError(f"give 1 to {MOST_PEOPLE} texts, one for each person, not {len(texts)}")
     acts, named = zip(*map(things_of_text, texts), strict=True)
     things = (*asked.things, *(Thing(kind=kind) for kinds in named for kind in kinds))
     if max(len(things), len(asked.reflectors)) > MAX_TARGETS:
         raise InputError(f"give at most {MAX_TARGETS} things and {MAX_TARGETS} reflectors")
-    if not 1 <= len(texts) <= MOST_PEOPLE:
-        raise InputError(f"give 1 to {MOST_PEOPLE} texts, one for each person, not {len(texts)}")
     is_empty = _asks_for_nobody(replace(asked, text=list(acts)))
     starts = _starts(asked.at, len(texts))
     check_poses(tuple(asked.radar_poses))
@@ -183,6 +184,7 @@ def parse(asked: Request, radar: RadarConfig, *, needs_adc: bool = False) -> Par
         radar_poses=tuple(asked.radar_poses),
         reflectors=tuple(asked.reflectors),
         things=things,
+        interferers=tuple(asked.interferers),
     )
 
 

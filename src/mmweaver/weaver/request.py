@@ -14,7 +14,7 @@ from mmweaver.core.options import Place, Source, option, options
 if TYPE_CHECKING:
     from mmweaver.core.board import Board
     from mmweaver.core.radar_pose import RadarPose
-    from mmweaver.core.targets import Reflector, Thing
+    from mmweaver.core.targets import Interferer, Reflector, Thing
     from mmweaver.motion.mocap.clip import MotionClip
 
 
@@ -66,6 +66,17 @@ def thing(word: str) -> "Thing":
     from mmweaver.core.targets import Thing
 
     return Thing.of_words(word)
+
+
+def interferer(word: str) -> "Interferer":
+    """Parses '0.5,3,0': place of another radar in metres.
+
+    Raises:
+        InputError: For any other form.
+    """
+    from mmweaver.core.targets import Interferer
+
+    return Interferer.of_words(word)
 
 
 @options
@@ -157,6 +168,16 @@ class Request:
         kind=thing,
         many=True,
         name="thing",
+    )
+    interferers: "Sequence[Interferer]" = option(
+        "another FMCW radar that faces the camera, at metres right of, ahead of and above it, and perhaps its EIRP in"
+        " dBm (default 22.5): its chirps cross those of the radar (docs/things.md)",
+        "X,Y,Z[,DBM]",
+        default=(),
+        kind=interferer,
+        many=True,
+        name="interferer",
+        rare=True,
     )
     board: "str | Path | Board | None" = option(
         "the board whose errors the signal has: typical, sampled by the seed from the spread of recorded boards"
