@@ -19,13 +19,14 @@ from mmweaver.core.boards import IDEAL_BOARD, PRESETS, compensated
 from mmweaver.core.constants import __version__
 from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareSettings
-from mmweaver.core.options import keywords_of
+from mmweaver.core.options import Place, keywords_of
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import AT_CAMERA
-from mmweaver.core.records import PoseSequence, Scene
-from mmweaver.core.seeding import single_precision
+from mmweaver.core.records import Breathing, PoseSequence, Scene
+from mmweaver.core.seeding import single_precision, stream
 from mmweaver.core.skeleton import joint
 from mmweaver.core.stages import Stages
+from mmweaver.core.targets import Thing
 from mmweaver.evaluation.background_board import BackgroundBoard
 from mmweaver.io.radar_file import load_firmware, load_radar
 from mmweaver.io.result_folder import META_VERSION, file_digest
@@ -39,13 +40,15 @@ from mmweaver.motion.mocap.clip_placement import place_clip
 from mmweaver.motion.mocap.read_motion import read_motion
 from mmweaver.motion.multi_person import compose_people
 from mmweaver.motion.people import subject_of
+from mmweaver.motion.physiology import held_breaths, living
 from mmweaver.motion.planning.placement import Conditions
 from mmweaver.propagation.rays import Rays
 from mmweaver.propagation.static_paths import ALL_PATHS
+from mmweaver.propagation.things import ThingPaths
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from, unseen_notes
 from mmweaver.signal.detection import check_points, detect, needs_adc
 from mmweaver.weaver.generation import Generation, Room
-from mmweaver.weaver.parsed_request import ParsedRequest, parse
+from mmweaver.weaver.parsed_request import ParsedRequest, PersonRequest, parse
 from mmweaver.weaver.request import Request
 from mmweaver.weaver.room_reader import RoomReader
 from mmweaver.weaver.streaming import (
@@ -217,6 +220,9 @@ class Weaver(RoomReader):
             keep_adc: Whether raw samples are returned, several times the cube's memory; the cube does not depend on it.
             board: Board whose errors the signal has: "typical" (sampled by the seed; the default, except with a
                 background, whose board is used), "typical:N", "ideal", a board.json or a `Board` (docs/board.md).
+            reflectors: Each a `Reflector` of known cross section (docs/things.md).
+            interferers: Each an `Interferer`, another radar.
+            things: Each a `Thing` that moves but is nobody: fan, curtain, door, cat ... (docs/things.md).
             radar_poses: One `RadarPose` per radar that records the scene (default: one at the camera).
 
         For several people `at`, `height_m` and `subject` are lists.
@@ -282,6 +288,7 @@ class Weaver(RoomReader):
         poses = request.radar_poses or (AT_CAMERA,)
         if room.background is not None and len(poses) > 1:
             raise InputError("a background recording is of one radar; give one radar pose, that of the recording")
+        room = with_targets(room, request)
         scenes = [scene_seen_from(room.scene, pose) for pose in poses]
         stages = Stages(self._listener)
         stages.seconds.update(room.seconds)
@@ -338,7 +345,11 @@ class Weaver(RoomReader):
         )
         with stages("point cloud"):
             points = detect(signal.cube, signal.adc, self.points, self.firmware_of(board))
-        poses = tuple(resample(one, signal.cube.grid.frame_time_s) for one in motions)
+        time_s = signal.cube.grid.frame_time_s
+        poses = tuple(
+            living(resample(one, time_s), request.seed, pose, time_s[-1] + request.config.frame_period_s)
+            for one in motions
+        )
         adc = signal.adc if request.keep_adc else None
         if adc is not None and self.calibration is not None and not request.config.is_coded:
             adc = self.calibration.recorded(adc)
@@ -347,7 +358,12 @@ class Weaver(RoomReader):
         meta = self._meta(request, room, people, poses, signal, board)
         if request.radar_poses:
             meta["radar_pose"] = pose
+        things = ThingPaths(room.scene, request.config).truth(time_s)
+        if things:
+            meta["things"] = [{"kind": one.kind, "starts_at_m": one.place_m[0], **one.facts} for one in things]
+        meta |= {name: one for name in ("reflectors", "interferers") if (one := getattr(room.scene, name))}
         return Generation(
+            things=things,
             cube=signal.cube,
             points=points,
             adc=adc,
@@ -419,6 +435,54 @@ class Weaver(RoomReader):
         }
 
 
+def with_targets(room: Room, request: ParsedRequest) -> Room:
+    """The room with the things and reflectors of a request, each thing at its place or at a free one.
+
+    Args:
+        room: The room in the camera's coordinates.
+        request: The parsed request.
+
+    Raises:
+        InputError: For reflectors in front of a background recording, which does not hold them.
+    """
+    if not request.things and not request.reflectors and not request.interferers:
+        return room
+    if request.reflectors and room.background is not None:
+        raise InputError("a background recording has its own echoes; leave out --reflector or --background")
+    things: list[Thing] = []
+    for number, thing in enumerate(request.things):
+        seed = int(stream(request.seed, "thing", number).integers(2**31))
+        taken = [one.place_m for one in (*things, *request.things) if one.place_m is not None]
+        place = thing.place_m or free_place(room.scene, request.range_window_m, seed, taken)
+        things.append(replace(thing, place_m=place, seed=seed))
+    targets = {"things": tuple(things), "reflectors": request.reflectors, "interferers": request.interferers}
+    return replace(room, scene=replace(room.scene, **targets))
+
+
+def free_place(
+    scene: Scene, range_window_m: tuple[float, float], seed: int, taken: Sequence[Place] = ()
+) -> tuple[float, float]:
+    """A free place on the floor in the radar's view, for a thing.
+
+    Args:
+        scene: The room in the camera's coordinates.
+        range_window_m: Nearest and farthest range that the radar keeps.
+        seed: Seed of the place.
+        taken: Places (x, y) to keep 0.8 m away from where there is room.
+    """
+    space, rng = scene.free_space, stream(seed, "thing place")
+    x, y = np.meshgrid(space.x_m, space.y_m)
+    distance = np.hypot(x, y)
+    good = space.is_free & (distance > max(range_window_m[0], 1.0)) & (distance < min(range_window_m[1], 5.0))
+    good &= np.abs(np.arctan2(x, y)) < np.radians(40)
+    apart = good & np.all([np.hypot(x - one[0], y - one[1]) > 0.8 for one in taken] or [good], axis=0)
+    cells = np.argwhere(apart if apart.any() else good)
+    if not len(cells):  # a room without free floor: beyond the person's usual place
+        return 0.6, float(np.clip(2.5, *range_window_m))
+    row, column = cells[rng.integers(len(cells))]
+    return float(space.x_m[column]), float(space.y_m[row])
+
+
 def compose_request(request: ParsedRequest, scene: Scene) -> tuple[Motion, ...]:
     """Composes the motion of each person; a recorded motion replaces that of the first.
 
@@ -450,7 +514,7 @@ def compose_request(request: ParsedRequest, scene: Scene) -> tuple[Motion, ...]:
         )
         who = subject_of(request.seed) if first.subject is None else first.subject
         recorded = replace(recorded, pose=replace(recorded.pose, subject=who))
-    return compose_people(
+    composed = compose_people(
         [person.plan for person in request.people],
         scene,
         seed=request.seed,
@@ -462,6 +526,13 @@ def compose_request(request: ParsedRequest, scene: Scene) -> tuple[Motion, ...]:
         heading_rad=request.heading_rad,
         farthest_m=request.config.farthest_bin_m,
     )
+    return tuple(_breathing(*pair) for pair in zip(composed, request.people, strict=True))
+
+
+def _breathing(motion: Motion, person: PersonRequest) -> Motion:
+    """The motion with the breathing that the text asks for."""
+    asked = Breathing(per_minute=person.breaths_per_minute, held_s=held_breaths(motion.plan.steps))
+    return motion if asked == Breathing() else replace(motion, pose=replace(motion.pose, breathing=asked))
 
 
 def _found(weights: str | Path, revision: str | None = None) -> Path:
@@ -508,6 +579,7 @@ def _person(pose: PoseSequence, motion: Motion) -> dict[str, Any]:
         "subject": pose.subject,
         "girth": pose.girth,
         **drawn,
+        **({} if pose.vitals is None else {name: getattr(pose.vitals, name) for name in ("breathing_hz", "heart_hz")}),
         "starts_at_m": path_m[0],
         "ends_at_m": path_m[-1],
         "path_length_m": round(float(np.linalg.norm(np.diff(path_m, axis=0), axis=1).sum()), 3),
