@@ -18,7 +18,7 @@ import numpy as np
 from measuring import least_cpu_seconds, report, results_folder
 
 from mmweaver.core import checksums
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.datasets.checked_folder import CheckedFolder
 from mmweaver.datasets.dataset_plan import DatasetPlan
 from mmweaver.datasets.dataset_store import read_rooms

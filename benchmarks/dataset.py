@@ -17,7 +17,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from measuring import report, results_folder
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.datasets.dataset_plan import DatasetPlan
 from mmweaver.datasets.generate_rooms import generate_dataset
 

@@ -17,7 +17,7 @@ import numpy as np
 import torch
 from measuring import report, results_folder
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import Plane
 from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.models.frame_motion import FrameMotion
@@ -26,13 +26,12 @@ from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.propagation.adc_synthesis import AdcSynthesis
 from mmweaver.propagation.body_model import DEFAULT_NUM_POINTS
 from mmweaver.propagation.body_paths import GHOST_POINTS
-from mmweaver.propagation.frame_clock import FrameClock
 from mmweaver.propagation.image_method import SpecularReflector
-from mmweaver.propagation.paths import ApparentPoint, Interaction, Paths
+from mmweaver.propagation.occlusion import Visibility
+from mmweaver.propagation.paths import ApparentPoint, FrameClock, Interaction, Paths
 from mmweaver.propagation.receiver import IDEAL, Receiver
 from mmweaver.propagation.resynthesis import Resynthesis, TracedMotion
 from mmweaver.propagation.static_paths import FIRST_ORDER, PreparedRoom, scattered_paths
-from mmweaver.propagation.visibility import Visibility
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.signal.cube import cube_values
 

@@ -9,7 +9,7 @@ import numpy as np
 import torch
 from measuring import least_cpu_seconds, least_seconds, report, results_folder
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import CubeGrid
 from mmweaver.core.seeding import stream
 from studies.paper.paper_inr import InrField, InrShape, fresh_modulation

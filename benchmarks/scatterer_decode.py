@@ -12,7 +12,7 @@ from measuring import least_cpu_seconds, least_seconds, report, results_folder
 from mmweaver.compression.scatterer_field import ScattererField
 from mmweaver.compression.scatterers.fit_window import FitWindow
 from mmweaver.compression.scatterers.layers import Layers
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import CubeGrid
 from mmweaver.signal.point_response import Points
 

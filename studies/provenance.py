@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import mmweaver
-from mmweaver.core.version import __version__
+from mmweaver.core.constants import __version__
 
 ROOT = Path(__file__).resolve().parents[1]
 MEASURED = ("src", "studies", "benchmarks")  # folders whose files decide what is measured

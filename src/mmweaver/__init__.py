@@ -7,12 +7,12 @@ methods, radars, detectors, activities and encoders; `mmweaver.weaver.testing` c
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from mmweaver.core.version import __version__
+from mmweaver.core.constants import __version__
 
 if TYPE_CHECKING:
     from mmweaver.core.board import Board
+    from mmweaver.core.boards import PRESETS
     from mmweaver.core.errors import InputError
-    from mmweaver.core.presets import PRESETS
     from mmweaver.core.radar_config import RadarConfig
     from mmweaver.core.radar_pose import RadarPose
     from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, Scene
@@ -32,7 +32,7 @@ _HOME = {
     "Comparison": "evaluation.compare_signals",
     "Generation": "weaver.generation",
     "InputError": "core.errors",
-    "PRESETS": "core.presets",
+    "PRESETS": "core.boards",
     "PointCloud": "core.records",
     "PoseSequence": "core.records",
     "RadarConfig": "core.radar_config",

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from mmweaver.core.board import Board
+from mmweaver.core.boards import AWR1843, BGT60, halfwave_positions
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843, BGT60, halfwave_positions
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PoseSequence, RadarCube, Scene
 from mmweaver.core.registry import Registry
@@ -22,8 +22,8 @@ from mmweaver.propagation.diffuse_clutter import seed_of_room
 from mmweaver.propagation.ray_traced import Simulator
 from mmweaver.propagation.receiver import IDEAL, Impairments
 from mmweaver.propagation.static_paths import Propagation
+from mmweaver.scene.photo_files import sample_photo
 from mmweaver.scene.reconstruction import reconstruct
-from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.signal.cube import radar_cube
 from mmweaver.signal.spectra import moving_doppler, range_doppler_power
 from mmweaver.signal.windows import hann

@@ -6,8 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mmweaver.compression.phase_centring import centred, centring_phasor
-from mmweaver.compression.signal_field import antenna_at, coordinates_on
+from mmweaver.compression.signal_field import antenna_at, centred, centring_phasor, coordinates_on
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from mmweaver.core.boards import BGT60
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import BGT60
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.registry import Registry

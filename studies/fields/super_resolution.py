@@ -25,11 +25,10 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.compression.phase_centring import centred, centring_phasor
 from mmweaver.compression.scatterer_field import ScattererField
 from mmweaver.compression.scatterers.fitting import FitRecipe as ScattererRecipe
-from mmweaver.compression.signal_field import SignalField, finer_grid, sampled_grid
-from mmweaver.core.presets import AWR1843
+from mmweaver.compression.signal_field import SignalField, centred, centring_phasor, finer_grid, sampled_grid
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube
 from mmweaver.core.shapes import CubeValues, RangeDopplerMask

@@ -1,4 +1,4 @@
-"""From 22 joints to HumanML3D's 263 features per frame, the inverse of `mmweaver.motion.mocap.humanml3d`.
+"""From 22 joints to HumanML3D's 263 features per frame, the inverse of `mmweaver.motion.mocap.joint_arrays`.
 
 Features need the next frame, so `n` frames of joints give `n - 1` of features.
 
@@ -12,7 +12,7 @@ from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import NUM_JOINTS, joint
-from mmweaver.motion.mocap.humanml3d import CONTACTS, NUM_FEATURES, ROTATIONS, VELOCITIES, rotated_about_y
+from mmweaver.motion.mocap.joint_arrays import CONTACTS, NUM_FEATURES, ROTATIONS, VELOCITIES, rotated_about_y
 
 Array = np.ndarray
 CHAINS = ((0, 2, 5, 8, 11), (0, 1, 4, 7, 10), (0, 3, 6, 9, 12, 15), (9, 14, 17, 19, 21), (9, 13, 16, 18, 20))

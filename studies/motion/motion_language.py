@@ -10,7 +10,7 @@ from torch import Tensor
 
 from mmweaver.core.seeding import stream
 from mmweaver.motion.motiongpt.language_model import build_t5
-from mmweaver.training.resuming import Resumable
+from mmweaver.training.trainer import Resumable
 from studies.motion.motion_tokenizer import REPORT_EVERY
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from torch.nn import functional
 
 from mmweaver.core.seeding import stream
 from mmweaver.motion.motiongpt.tokenizer import Codebook, MotionTokenizer, TokenizerConfig
-from mmweaver.training.resuming import Resumable
+from mmweaver.training.trainer import Resumable
 
 REPORT_EVERY = 50  # steps
 JOINTS = slice(4, 67)

@@ -12,10 +12,8 @@ from mmweaver.core.records import FreeSpace, PoseSequence, Scene
 from mmweaver.core.seeding import stream
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.timing import plan_motion
-from mmweaver.motion.mocap.clip import MotionClip
-from mmweaver.motion.mocap.clip_resampling import low_passed
-from mmweaver.motion.mocap.humanml3d import FPS
-from mmweaver.motion.mocap.joint_arrays import clips_of
+from mmweaver.motion.mocap.clip import MotionClip, low_passed
+from mmweaver.motion.mocap.joint_arrays import FPS, clips_of
 from mmweaver.motion.mocap.read_motion import read_motion
 from studies.motion.humanml3d_features import features_from_joints, y_up
 from studies.physics.empty_room_cube import empty_room

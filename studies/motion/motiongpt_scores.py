@@ -19,7 +19,7 @@ from jaxtyping import Bool, Float
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import BONES
 from mmweaver.io.result_folder import file_digest
-from mmweaver.motion.mocap.humanml3d import FPS, joints_from_features
+from mmweaver.motion.mocap.joint_arrays import FPS, joints_from_features
 from mmweaver.motion.motiongpt.motiongpt import MotionGPT
 from studies.manifest import StudyRun
 from studies.motion.humanml3d_features import features_from_joints, y_up

@@ -15,7 +15,7 @@ import numpy as np
 import torch
 from jaxtyping import Float
 
-from mmweaver.motion.mocap.humanml3d import CONTACTS, ROTATIONS, VELOCITIES
+from mmweaver.motion.mocap.joint_arrays import CONTACTS, ROTATIONS, VELOCITIES
 from mmweaver.motion.motiongpt.language_model import add_motion_tokens
 from mmweaver.motion.motiongpt.tokenizer import MotionTokenizer, TokenizerConfig
 from studies.manifest import StudyRun

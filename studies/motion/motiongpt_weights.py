@@ -11,7 +11,7 @@ from torch import Tensor
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.tensor_files import write_tensors
 from mmweaver.motion.motiongpt.checkpoint import LANGUAGE, MEAN, STD, VAE, VOCABULARY
-from mmweaver.motion.motiongpt.text_tokenizer import wrapped
+from mmweaver.motion.motiongpt.language_model import wrapped
 from mmweaver.motion.motiongpt.tokenizer import MotionTokenizer
 
 if TYPE_CHECKING:

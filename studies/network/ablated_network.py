@@ -9,10 +9,9 @@ from torch import Tensor
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.models.body_anchors import ANCHORS, Anchors
-from mmweaver.models.body_prior import BodyPrior
-from mmweaver.models.scatterer_network import MAX_STEP, SceneEncoding, WeaverNetwork
+from mmweaver.models.scatterer_network import MAX_STEP, BodyPrior, SceneEncoding, WeaverNetwork
 from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.propagation.mean_scatterers import MeanEchoes
+from mmweaver.propagation.mean_power import MeanEchoes
 
 STRENGTH = 7  # column of SceneTensors.point_features: what physics says of a point's strength
 FLAT_M2, FLAT_OFFSET_M = 0.02, -0.06

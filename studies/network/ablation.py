@@ -33,8 +33,7 @@ from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.propagation.mean_power import PowerMaps
 from mmweaver.propagation.radar_equation import points_of
 from mmweaver.scene.reconstruction import reconstruct
-from mmweaver.training.expected_maps import ExpectedMaps
-from mmweaver.training.network_examples import NetworkBatch, RoomExamples
+from mmweaver.training.network_examples import ExpectedMaps, NetworkBatch, RoomExamples
 from mmweaver.training.network_loss import Targets
 from mmweaver.training.network_training import VALIDATION_SEED, NetworkLearner, TrainingRecipe, batch_sampler
 from mmweaver.training.trainer import Trainer

@@ -40,7 +40,7 @@ from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.weights import load_weights, read_card, shipped_weights
 from mmweaver.propagation.diffuse_clutter import seed_of_room
-from mmweaver.propagation.frame_clock import FrameClock
+from mmweaver.propagation.paths import FrameClock
 from mmweaver.propagation.ray_traced import Simulator
 from mmweaver.propagation.static_paths import ALL_PATHS, Propagation
 from mmweaver.scene.procedural.procedural_room import make_room

@@ -24,8 +24,8 @@ from mmweaver.evaluation.pose_errors import joint_errors_cm
 from mmweaver.models.point_frames import point_frames
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.recognition.generated_sequences import joints_at
-from mmweaver.recognition.pose_estimator import PoseEstimator
 from mmweaver.recognition.task_file import RecordingSettings
+from mmweaver.recognition.train_pose import PoseEstimator
 from mmweaver.signal.points import point_cloud
 from mmweaver.training.pose_training import PosedFrames, PoseRecipe, PoseWindows, mean_pose_m, train_pose
 from studies.manifest import StudyRun

@@ -20,8 +20,14 @@ import numpy as np
 import torch
 from jaxtyping import Complex, Float
 
-from mmweaver.compression.phase_centring import centring_phasor, centring_phasor_at
-from mmweaver.compression.signal_field import CHUNK_POINTS, Coordinates, SignalField, coordinates_on
+from mmweaver.compression.signal_field import (
+    CHUNK_POINTS,
+    Coordinates,
+    SignalField,
+    centring_phasor,
+    centring_phasor_at,
+    coordinates_on,
+)
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid
 from mmweaver.core.shapes import CubeValues

@@ -15,7 +15,7 @@ from mmweaver.models.methods import Learned
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.models.weights import WeightsCard, load_into, read_card
-from mmweaver.propagation.mean_scatterers import MeanEchoes
+from mmweaver.propagation.mean_power import MeanEchoes
 from mmweaver.propagation.paths import Paths
 from mmweaver.propagation.radar_equation import carrier, points_of
 from mmweaver.propagation.speckle import place_of, radial_scatterers

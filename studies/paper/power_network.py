@@ -25,7 +25,7 @@ from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
 from mmweaver.models.precision import full_precision
 from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.propagation.mean_scatterers import MeanEchoes
+from mmweaver.propagation.mean_power import MeanEchoes
 from studies.paper.pca_whitening import PcaWhitening
 from studies.paper.power_anchors import (
     BODY_VALUES,

@@ -9,8 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import torch
 
-from mmweaver.compression.phase_centring import centred
-from mmweaver.compression.signal_field import SignalField
+from mmweaver.compression.signal_field import SignalField, centred
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
 from mmweaver.core.registry import Registry

@@ -29,8 +29,7 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.core.boards import find_board
-from mmweaver.core.presets import BGT60
+from mmweaver.core.boards import BGT60, find_board
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.ray_caster import RayCaster
 from mmweaver.core.records import AdcCube, PoseSequence, Scene

@@ -25,8 +25,8 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from mmweaver.core.board import Board
+from mmweaver.core.boards import IWR1443_MARS
 from mmweaver.core.firmware_settings import FIRMWARE, FirmwareSettings
-from mmweaver.core.presets import IWR1443_MARS
 from mmweaver.core.records import AdcCube, PointCloud
 from mmweaver.core.seeding import stream
 from mmweaver.motion.micro_motion import STILL, MicroMotionSettings

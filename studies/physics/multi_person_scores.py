@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import PointCloud, PoseSequence, RadarCube
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint

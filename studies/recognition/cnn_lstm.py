@@ -13,7 +13,7 @@ import torch
 from torch import Tensor, nn
 
 from mmweaver.core.seeding import stream
-from mmweaver.models.log_maps import MIDDLE_DB, SPREAD_DB
+from mmweaver.models.frame_motion import MIDDLE_DB, SPREAD_DB
 
 MOVING = 1  # of the two range-azimuth maps: what is left without static clutter
 WIDTHS, FRAME_WIDTH, DROPPED = (8, 16, 32), 64, 0.4

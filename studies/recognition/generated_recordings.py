@@ -16,8 +16,7 @@ from mmweaver.datasets.dataset_plan import ACTIVITIES, PEOPLE_HEIGHT_M, Sequence
 from mmweaver.datasets.dataset_store import StoredRoom
 from mmweaver.datasets.room_generation import pose_of
 from mmweaver.models.activity_network import ACTIVITY_NAMES
-from mmweaver.models.frame_motion import FrameMotion
-from mmweaver.models.log_maps import MIDDLE_DB, SPREAD_DB
+from mmweaver.models.frame_motion import MIDDLE_DB, SPREAD_DB, FrameMotion
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.propagation.receiver import IDEAL, Receiver

@@ -19,10 +19,10 @@ from typing import Any
 import numpy as np
 from scipy.stats import t as student
 
-from mmweaver.recognition.adaptation import OWN_LEAF, labelled_alone, own_trees
 from mmweaver.recognition.point_recordings import windows_of
 from mmweaver.recognition.recogniser import recognition_features
 from mmweaver.recognition.scoring import balanced_accuracy
+from mmweaver.recognition.train_recogniser import OWN_LEAF, labelled_alone, own_trees
 from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindows
 from mmweaver.recognition.tree_ensemble import joined_trees
 from studies.manifest import StudyRun, content_of

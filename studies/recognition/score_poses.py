@@ -13,7 +13,7 @@ from mmweaver.core.skeleton import joint
 from mmweaver.evaluation.pose_errors import ALIGNMENTS, joint_errors_cm
 from mmweaver.models.point_frames import point_frames
 from mmweaver.recognition.point_recordings import PointRecording
-from mmweaver.recognition.pose_estimator import PoseEstimator
+from mmweaver.recognition.train_pose import PoseEstimator
 from studies.physics.mars_data import posed_recordings
 
 Joints = Float[np.ndarray, "frame 22 3"]

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.recognition.point_recordings import read_task_recordings
-from mmweaver.recognition.pose_estimator import load_estimator
 from mmweaver.recognition.recogniser import load_recogniser
 from mmweaver.recognition.scoring import score_recordings
+from mmweaver.recognition.train_pose import load_estimator
 from studies.manifest import StudyRun, content_of
 from studies.recognition.blind_recognition import WORDS
 from studies.recognition.score_poses import score_poses

@@ -23,9 +23,8 @@ import numpy as np
 
 from mmweaver.models.point_frames import middle_m, near
 from mmweaver.recognition.point_recordings import PointRecording
-from mmweaver.recognition.pose_estimator import PoseEstimator, load_estimator
 from mmweaver.recognition.task_file import RecognitionTask, read_task
-from mmweaver.recognition.train_pose import generated_frames, posed_frames, split_people
+from mmweaver.recognition.train_pose import PoseEstimator, generated_frames, load_estimator, posed_frames, split_people
 from mmweaver.training.pose_training import PosedFrames, PoseRecipe, PoseWindows, mean_pose_m, train_pose
 from mmweaver.training.trainer import Trainer
 from mmweaver.viz.motion_strip import draw_pose_strips

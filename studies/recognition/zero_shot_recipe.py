@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from mmweaver.core.atomic_files import atomic_file
+from mmweaver.core.boards import IWR1443_RADHAR
 from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FIRMWARE, FirmwareSettings
-from mmweaver.core.presets import IWR1443_RADHAR
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud, PoseSequence
 from mmweaver.core.safe_files.safe_arrays import read_npz
@@ -21,12 +21,12 @@ from mmweaver.core.safe_files.safe_text import read_text
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.compose import compose
-from mmweaver.motion.language.sentence_parser import parse_sentence
+from mmweaver.motion.language.sentence import parse_sentence
 from mmweaver.motion.language.timing import schedule
 from mmweaver.motion.people import Person
+from mmweaver.recognition.generated_sequences import PointRadar, observed_cloud
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.random_scene import Span, Variation, VariationSample, random_scene, sample_variation
-from mmweaver.recognition.sensor_model import PointRadar, observed_cloud
 from mmweaver.recognition.subject_simulation import (
     SLOWEST_MPS,
     pelvis_speed_mps,

@@ -12,9 +12,9 @@ import numpy as np
 from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.records import Scene
+from mmweaver.scene.procedural.arrangement import KINDS
 from mmweaver.scene.procedural.lighting import LIGHTINGS
 from mmweaver.scene.procedural.procedural_room import make_room
-from mmweaver.scene.procedural.room_kinds import KINDS
 from mmweaver.scene.read_photo import read_photo
 from mmweaver.scene.reconstruction import reconstruct
 from studies.manifest import StudyRun

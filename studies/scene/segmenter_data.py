@@ -14,8 +14,7 @@ from mmweaver.core.shapes import Array
 from mmweaver.scene.photo.depth_grid import make_grid
 from mmweaver.scene.procedural.lighting import LIGHTINGS
 from mmweaver.scene.procedural.procedural_room import make_room
-from mmweaver.scene.segmentation.builtin_segmenter import group_of_classes
-from mmweaver.scene.segmentation.segmenter_features import (
+from mmweaver.scene.segmentation.builtin_segmenter import (
     COLOURS,
     HEIGHT,
     HEIGHT_UNIT_M,
@@ -23,6 +22,7 @@ from mmweaver.scene.segmentation.segmenter_features import (
     SLOPE,
     STRIDE,
     grid_features,
+    group_of_classes,
 )
 
 _CROP = (48, 64)  # cells; a multiple of the downsampling factor of the network

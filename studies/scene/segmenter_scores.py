@@ -7,8 +7,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from mmweaver.core.shapes import Array
-from mmweaver.scene.segmentation.builtin_segmenter import GROUP_NAMES
-from mmweaver.scene.segmentation.segmenter_features import HEIGHT, HEIGHT_UNIT_M, MEASURED, SLOPE
+from mmweaver.scene.segmentation.builtin_segmenter import GROUP_NAMES, HEIGHT, HEIGHT_UNIT_M, MEASURED, SLOPE
 from studies.scene.segmenter_data import SegmenterExample
 
 

@@ -24,12 +24,13 @@ from mmweaver.scene.read_photo import read_photo
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.segmentation.builtin_segmenter import (
     GROUP_NAMES,
+    STRIDE,
+    grid_features,
     group_of_classes,
     groups_of_cells,
     load_network,
     segment_builtin,
 )
-from mmweaver.scene.segmentation.segmenter_features import STRIDE, grid_features
 from studies.manifest import StudyRun
 from studies.result_rows import complete_rows
 from studies.scene.affordances import Tally, measure_scene, share_of

@@ -16,7 +16,7 @@ import numpy as np
 from mmweaver.core.seeding import stream
 from mmweaver.core.tensor_files import write_tensors
 from mmweaver.scene.segmentation.builtin_segmenter import GROUP_NAMES, groups_of_cells, make_network
-from mmweaver.training.resuming import Resumable
+from mmweaver.training.trainer import Resumable
 from studies.scene.segmenter_data import SegmenterExample, augmented, make_examples
 from studies.scene.segmenter_scores import by_geometry, confusion, scores
 

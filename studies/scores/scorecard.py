@@ -11,8 +11,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud, RadarCube
 from mmweaver.core.shapes import RangeAngleMap, RangeDopplerMap, RangeDopplerMask
 from mmweaver.evaluation.map_scores import log_map_difference_db
-from mmweaver.signal.cfar import ca_cfar
-from mmweaver.signal.points import point_cloud
+from mmweaver.signal.points import ca_cfar, point_cloud
 from mmweaver.signal.spectra import azimuth_axis_rad, range_azimuth_power, range_doppler_power
 from studies.scores.cloud_distances import cloud_distances_m
 from studies.scores.cube_scores import (

@@ -15,7 +15,7 @@ from PIL import Image
 
 from mmweaver.cli import generate, train
 from mmweaver.cli.main import main
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.core.stages import Stages
 from mmweaver.io.dca1000 import write_bin
@@ -24,7 +24,7 @@ from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.joint_arrays import CMU_NAMES
 from mmweaver.motion.motion_models import MotionTask
 from mmweaver.scene.photo.estimated_depth import PROMPTED
-from mmweaver.scene.sample_photo import sample_photo
+from mmweaver.scene.photo_files import sample_photo
 from mmweaver.training.captures import read_capture
 from mmweaver.weaver.front_door import Weaver, compose_request
 from mmweaver.weaver.generation import Generation, Room

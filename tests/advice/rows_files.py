@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from mmweaver.cli.main import main
-from mmweaver.core.presets import ANTENNAS
+from mmweaver.core.boards import ANTENNAS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.io.dca1000 import upright, write_bin

@@ -10,7 +10,7 @@ from beartype import beartype
 from jaxtyping import Float32, TypeCheckError
 from threadpoolctl import threadpool_info
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import AdcCube
 from tests.shape_checks import FIRST_CALLS, next_file
 

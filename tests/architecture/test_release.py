@@ -7,7 +7,7 @@ from typing import Any
 
 import yaml
 
-from mmweaver.core.version import __version__
+from mmweaver.core.constants import __version__
 
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]

@@ -10,8 +10,8 @@ import pytest
 
 from mmweaver.cli.arguments import parsed, request_toml
 from mmweaver.cli.main import main, parser_of
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.io.npz_files import read_radar_npz
 from mmweaver.models.methods import Learned, Physics
 from mmweaver.propagation.static_paths import Propagation

@@ -12,8 +12,8 @@ from PIL import Image
 
 from mmweaver.cli.main import main
 from mmweaver.io.npz_files import read_npz, read_radar_npz
-from mmweaver.scene.sample_photo import sample_photo
-from mmweaver.viz.previews import PREVIEWS
+from mmweaver.scene.photo_files import sample_photo
+from mmweaver.viz.preview import PREVIEWS
 from tests.captures import write_camera
 from tests.platforms import posix_only
 

@@ -9,7 +9,7 @@ import pytest
 from mmweaver.cli.main import main
 from mmweaver.io.npz_files import write_points_npz
 from mmweaver.recognition import train_pose
-from mmweaver.recognition.pose_estimator import load_estimator
+from mmweaver.recognition.train_pose import load_estimator
 from tests.training.moving_arm import moving_arm
 
 TASK = 'radar = "iwr1443_mars"\nwindow_s = 0.8\n[activities]\narm = ["a person raises the left arm"]\n'

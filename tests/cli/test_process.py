@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from mmweaver.cli.main import main
-from mmweaver.core.boards import typical_board
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843, typical_board
 from mmweaver.core.records import AdcCube
 from mmweaver.core.seeding import stream
 from mmweaver.io.dca1000 import write_bin

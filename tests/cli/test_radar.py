@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from mmweaver.cli.main import main
-from mmweaver.core.presets import PRESETS
+from mmweaver.core.boards import PRESETS
 from mmweaver.core.radar_config import RadarConfig
 
 

@@ -13,8 +13,7 @@ from mmweaver.datasets.build_set import read_activities
 from mmweaver.io.dca1000 import read_bin
 from mmweaver.io.radar_file import load_radar
 from mmweaver.recognition.task_file import read_task
-from mmweaver.scene.photo_files import RoomFiles
-from mmweaver.scene.sample_photo import sample_photo
+from mmweaver.scene.photo_files import RoomFiles, sample_photo
 
 
 @pytest.fixture(scope="module")

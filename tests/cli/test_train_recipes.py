@@ -14,7 +14,7 @@ import torch
 from safetensors.torch import load_file
 
 from mmweaver.cli.main import main
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.datasets.activity_store import read_activity_set
 from mmweaver.models.activity_network import ActivityNetwork, label_names_of, load_activity
 from mmweaver.models.weights import load_into, shipped_weights

@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
 from mmweaver.core.seeding import stream

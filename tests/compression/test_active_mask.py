@@ -1,6 +1,6 @@
 import numpy as np
 
-from mmweaver.compression.active_mask import active_mask
+from mmweaver.compression.quantised_cells import active_mask
 from mmweaver.core.seeding import stream
 
 

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from mmweaver.compression.beams import beams_of
-from mmweaver.core.presets import AWR1843, BGT60
+from mmweaver.compression.quantised_cells import beams_of
+from mmweaver.core.boards import AWR1843, BGT60
 from mmweaver.core.radar_config import RadarConfig
 
 

@@ -6,8 +6,8 @@ import pytest
 
 from mmweaver.compression import lossless_file
 from mmweaver.compression.lossless_file import LosslessFile, compress_bin, describe_lossless
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.core.seeding import stream
 from mmweaver.io.dca1000 import bytes_of_frame
 from tests.captures import PAYLOAD, counts, packets_of, pcap_of, radar_of_cfg

@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 
 from mmweaver.compression import optimiser
-from mmweaver.compression.active_mask import active_mask
 from mmweaver.compression.mmw_codec import compress_cube, describe_mmw, errors_db, read_cube, values_of_bytes
 from mmweaver.compression.mmw_field import open_mmw
 from mmweaver.compression.optimiser import EXACT_DB
+from mmweaver.compression.quantised_cells import active_mask
+from mmweaver.core.boards import AWR1843, BGT60
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843, BGT60
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.core.seeding import stream
 from tests.compression.echoes import SMALL, crowd, error_db

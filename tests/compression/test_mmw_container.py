@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from mmweaver.compression.mmw_container import PREFIX, WORDS, MmwFile, header_for, pack_mmw
+from mmweaver.core.boards import AWR1843, BGT60
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843, BGT60
 
 CHUNKS = [bytes(range(60)), b"second chunk"]
 TIMES_S = np.array([1.0, 1.1, 1.2])

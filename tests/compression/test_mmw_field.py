@@ -8,7 +8,7 @@ from mmweaver.compression import optimiser
 from mmweaver.compression.mmw_codec import compress_cube, read_cube
 from mmweaver.compression.mmw_field import open_mmw
 from mmweaver.compression.signal_field import finer_grid
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import CubeGrid, RadarCube
 from tests.compression.echoes import crowd, error_db
 

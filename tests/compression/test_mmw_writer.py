@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mmweaver.compression.long_recording import MmwWriter
 from mmweaver.compression.mmw_codec import describe_mmw, read_cube
-from mmweaver.compression.mmw_writer import MmwWriter
 from mmweaver.core.errors import InputError
 from tests.compression.echoes import SMALL, error_db
 from tests.compression.test_mmw_codec import plain_cube

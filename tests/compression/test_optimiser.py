@@ -3,10 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.compression.active_mask import active_mask
 from mmweaver.compression.chunk import decode_chunk
 from mmweaver.compression.mmw_codec import compress_cube, values_of_bytes
 from mmweaver.compression.optimiser import Optimiser, error_db
+from mmweaver.compression.quantised_cells import active_mask
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.core.seeding import stream

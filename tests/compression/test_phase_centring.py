@@ -3,8 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.compression.phase_centring import centred, centring_phasor, centring_phasor_at
-from mmweaver.core.presets import AWR1843
+from mmweaver.compression.signal_field import centred, centring_phasor, centring_phasor_at
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import AdcCube, CubeGrid
 from mmweaver.signal.cube import radar_cube
 from tests.cubes import SMALL, point_adc, point_cube

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.compression.beams import beams_of
 from mmweaver.compression.entropy import Decoder, Encoder
+from mmweaver.compression.quantised_cells import beams_of
 from mmweaver.compression.scatterer_coder import (
     CodedPoints,
     PointCoder,

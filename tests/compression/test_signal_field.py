@@ -12,8 +12,8 @@ from mmweaver.compression.signal_field import (
     finer_grid,
     sampled_grid,
 )
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid
 from tests.cubes import SMALL
 

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from mmweaver.core.board import Board, read_board
-from mmweaver.core.boards import IDEAL_BOARD, compensated, find_board, typical_board
+from mmweaver.core.boards import AWR1843, BGT60, IDEAL_BOARD, compensated, find_board, typical_board
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843, BGT60
 
 REPOSITORY = Path(__file__).parents[2]
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.core.default_precision import single_precision
+from mmweaver.core.seeding import single_precision
 from mmweaver.weaver.front_door import Weaver
 
 

@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 
+from mmweaver.core.boards import PRESETS
 from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FIRMWARE, FirmwareCfar, FirmwareSettings
-from mmweaver.core.presets import PRESETS
 
 
 def test_defaults_are_the_3d_profile_of_the_iwr1443():

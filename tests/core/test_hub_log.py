@@ -4,7 +4,7 @@ import logging
 
 import pytest
 
-from mmweaver.core.hub_log import hub_log_off
+from mmweaver.core.optional_packages import hub_log_off
 
 
 def test_it_is_silent_and_then_as_before(caplog: pytest.LogCaptureFixture):

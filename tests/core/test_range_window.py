@@ -2,8 +2,8 @@
 
 import pytest
 
+from mmweaver.core.boards import AWR1843, BGT60
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843, BGT60
 from mmweaver.core.range_window import chosen_range, with_range, with_range_bins
 
 

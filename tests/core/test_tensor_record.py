@@ -7,7 +7,7 @@ import pytest
 import torch
 from torch import Tensor
 
-from mmweaver.core.tensor_record import TensorRecord
+from mmweaver.core.tensor_files import TensorRecord
 
 
 @dataclass(frozen=True, kw_only=True)

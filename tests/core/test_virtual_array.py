@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.core.presets import AWR1843, BGT60
+from mmweaver.core.boards import AWR1843, BGT60
 from mmweaver.core.virtual_array import azimuth_resolution_rad, azimuth_row, elevation_rows, has_elevation
 
 

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.datasets.dataset_store import read_rooms
 from mmweaver.datasets.generate_rooms import generate_dataset
 from tests.training.tiny_data import TINY_PLAN

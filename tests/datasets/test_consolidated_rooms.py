@@ -4,7 +4,7 @@ import hashlib
 from pathlib import Path
 
 from mmweaver.core.checksums import SUMS_FILE, read_sums
-from mmweaver.datasets.dataset_writer import METADATA, consolidate_rooms
+from mmweaver.datasets.generate_rooms import METADATA, consolidate_rooms
 
 
 def test_a_kill_between_the_two_files_is_made_good(tmp_path: Path):

@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 from huggingface_hub import DatasetCard
 
-from mmweaver.core.version import __version__
+from mmweaver.core.constants import __version__
 from mmweaver.datasets.data_card import CARD_FILE, write_rooms_card, write_set_card
-from mmweaver.datasets.dataset_writer import AXES
+from mmweaver.datasets.generate_rooms import AXES
 from mmweaver.datasets.radar_dataset import RadarDataset
 from mmweaver.datasets.verification import verify
 from tests.datasets.conftest import activity_set  # noqa: F401  (a fixture)

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.datasets.dataset_cost import check_for_space, estimate_cost
 from mmweaver.datasets.dataset_plan import DatasetPlan
 from tests.training.tiny_data import TINY_PLAN

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.checksums import SUMS_FILE, damages, read_sums
-from mmweaver.core.presets import AWR1843
 from mmweaver.datasets.dataset_plan import DatasetPlan
-from mmweaver.datasets.dataset_writer import open_dataset
+from mmweaver.datasets.generate_rooms import open_dataset
 
 pytest.importorskip("zarr")
 PLAN = DatasetPlan(kinds=("office",), lightings=("day",), num_layouts=1, sequences_a_room=1, num_frames=2)

@@ -14,15 +14,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.core.boards import IDEAL_BOARD
+from mmweaver.core.boards import AWR1843, IDEAL_BOARD
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.core.staging import is_being_written, staging_path
 from mmweaver.datasets import generate_rooms
 from mmweaver.datasets.dataset_plan import DatasetPlan
 from mmweaver.datasets.dataset_store import PLAN_FILE, read_rooms
-from mmweaver.datasets.dataset_writer import open_dataset
-from mmweaver.datasets.generate_rooms import generate_dataset, generate_one
+from mmweaver.datasets.generate_rooms import generate_dataset, generate_one, open_dataset
 
 zarr = pytest.importorskip("zarr")
 PLAN = DatasetPlan(kinds=("office",), lightings=("day",), num_layouts=2, sequences_a_room=2, num_frames=2)
@@ -147,7 +145,7 @@ def test_a_set_begun_and_killed_at_once_is_resumed(folder: Path, tmp_path: Path)
 def test_several_that_start_at_once_make_one_set(folder: Path, tmp_path: Path):
     code = (
         "import sys; from pathlib import Path; from mmweaver.datasets.dataset_plan import DatasetPlan;"
-        "from mmweaver.core.presets import AWR1843; from mmweaver.datasets.dataset_writer import open_dataset;"
+        "from mmweaver.core.boards import AWR1843; from mmweaver.datasets.generate_rooms import open_dataset;"
         "sys.stdin.read();"
         "open_dataset(Path(sys.argv[1]), DatasetPlan(kinds=('office',), lightings=('day',), num_layouts=2,"
         " sequences_a_room=2, num_frames=2), AWR1843)"

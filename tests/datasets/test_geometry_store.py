@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.datasets.dataset_store import read_rooms
 from mmweaver.datasets.generate_rooms import generate_dataset
 from mmweaver.datasets.geometry_store import StoredGeometry

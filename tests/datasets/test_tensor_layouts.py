@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import PRESETS
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import PRESETS
 from mmweaver.core.records import AdcCube
 from mmweaver.datasets.tensor_layouts import (
     HUPR_JOINTS,

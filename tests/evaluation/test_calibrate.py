@@ -10,9 +10,8 @@ import torch
 
 import mmweaver
 from mmweaver.core.board import Board
-from mmweaver.core.boards import typical_board
+from mmweaver.core.boards import AWR1843, typical_board
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.evaluation.antenna_fits import fit_channels

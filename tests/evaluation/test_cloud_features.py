@@ -7,7 +7,7 @@ import pytest
 
 from mmweaver.core.records import PointCloud
 from mmweaver.evaluation.cloud_features import points_height, points_per_frame
-from mmweaver.evaluation.measured_feature import FEATURES
+from mmweaver.evaluation.finding import FEATURES
 from mmweaver.evaluation.signal_evidence import CannotSeeError, SignalEvidence
 from tests.evaluation.made_signals import RADAR, evidence, samples, still
 

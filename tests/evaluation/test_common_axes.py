@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.errors import InputError
-from mmweaver.evaluation.common_axes import common_axes, common_window_m, maps_of
+from mmweaver.evaluation.compared_sides import common_axes, common_window_m, maps_of
 from mmweaver.evaluation.signal_evidence import SignalEvidence
 from tests.evaluation.made_signals import RADAR, evidence, samples, still
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import BGT60
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import BGT60
 from mmweaver.core.records import AdcCube
 from mmweaver.evaluation.compare_signals import FEATURES, compare
 from mmweaver.io.dca1000 import read_bin

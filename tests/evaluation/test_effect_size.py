@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.seeding import stream
-from mmweaver.evaluation.effect_size import difference_of, spread_of
+from mmweaver.evaluation.finding import difference_of, spread_of
 
 
 def test_intervals_cover_the_median():

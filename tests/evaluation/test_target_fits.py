@@ -8,8 +8,8 @@ import pytest
 import torch
 
 from mmweaver.core.board import Board
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube
 from mmweaver.evaluation.calibrate import calibrate
 from mmweaver.evaluation.target_fits import KnownTarget

@@ -12,7 +12,7 @@ if not sys.platform.startswith("linux"):
 
 from mmweaver.cli.main import main
 from mmweaver.core.atomic_files import create_once
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.datasets import room_generation
 from mmweaver.datasets.dataset_plan import DatasetPlan
 from mmweaver.datasets.generate_rooms import generate_dataset

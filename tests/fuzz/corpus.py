@@ -11,7 +11,7 @@ from PIL import Image
 
 from mmweaver.compression.chunk import PREFIX
 from mmweaver.compression.mmw_codec import compress_cube
-from mmweaver.core.presets import PRESETS
+from mmweaver.core.boards import PRESETS
 from tests import captures
 from tests.cubes import point_cube
 from tests.fuzz import mutators as m

@@ -19,14 +19,13 @@ from mmweaver.cli.main import parser_of
 from mmweaver.compression.checked_file import CHECK
 from mmweaver.compression.lossless_file import PREFIX as LOSSLESS
 from mmweaver.compression.lossless_file import LosslessFile, compress_bin
-from mmweaver.core.presets import MMMESH, PRESETS
+from mmweaver.core.boards import MMMESH, PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_tensors import read_checkpoint
 from mmweaver.core.safe_files.safe_text import read_json, read_text
 from mmweaver.core.tensor_files import write_tensors
 from mmweaver.datasets.build_set import read_activities
-from mmweaver.io.dca_packets import read_pcap
-from mmweaver.io.pcap import udp_packets
+from mmweaver.io.dca_packets import read_pcap, udp_packets
 from mmweaver.io.peer_arrays import detect_layout, read_cubelearn, read_hupr
 from mmweaver.io.point_clouds.read_points import read_points
 from mmweaver.io.radar_options import RadarOptions, read_antennas
@@ -35,8 +34,8 @@ from mmweaver.io.stream_folder import read_stream_cube
 from mmweaver.models.weights import FORMAT, load_into
 from mmweaver.motion.language.sentence import parse
 from mmweaver.studio.schemas import Form
-from mmweaver.training.run_log import RunLog
-from mmweaver.viz.wire import pack, unpack
+from mmweaver.training.trainer import RunLog
+from mmweaver.viz.body_in_photo import pack, unpack
 from tests.fuzz import mutators as m
 from tests.fuzz.harness import Reader, wrong_numbers
 from tests.fuzz.set_readers import members_reader

@@ -13,7 +13,7 @@ from PIL import Image
 
 from mmweaver.cli.batch import read_texts
 from mmweaver.compression.mmw_codec import compress_cube, describe_mmw, read_cube
-from mmweaver.core.presets import PRESETS
+from mmweaver.core.boards import PRESETS
 from mmweaver.core.records import AdcCube, CameraIntrinsics, PointCloud, PoseSequence
 from mmweaver.core.safe_files.safe_text import read_toml
 from mmweaver.core.skeleton import JOINT_NAMES, PARENTS

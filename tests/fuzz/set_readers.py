@@ -26,10 +26,10 @@ from mmweaver.datasets.geometry_store import GEOMETRY, StoredGeometry
 from mmweaver.datasets.room_generation import RoomGeometry
 from mmweaver.datasets.verification import verify
 from mmweaver.datasets.zarr_arrays import put_array
-from mmweaver.propagation.frame_clock import FrameClock
+from mmweaver.propagation.occlusion import Visibility
+from mmweaver.propagation.paths import FrameClock
 from mmweaver.propagation.static_paths import FIRST_ORDER
 from mmweaver.propagation.static_paths_store import room_of
-from mmweaver.propagation.visibility import Visibility
 from tests.fuzz import mutators as m
 from tests.fuzz.harness import Reader
 

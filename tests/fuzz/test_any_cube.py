@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from hypothesis import strategies as st
 
-from mmweaver.compression.active_mask import active_mask
 from mmweaver.compression.mmw_codec import FLOAT32_DB, MAX_PEAK, compress_cube, values_of_bytes
 from mmweaver.compression.optimiser import error_db
+from mmweaver.compression.quantised_cells import active_mask
 from mmweaver.core.records import CubeGrid, RadarCube
 from tests.compression.echoes import SMALL
 from tests.fuzz.test_properties import deep, hold

@@ -16,11 +16,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
+from mmweaver.compression.long_recording import MmwWriter
 from mmweaver.compression.lossless_file import LosslessFile, compress_bin
 from mmweaver.compression.mmw_codec import compress_cube, read_cube
-from mmweaver.compression.mmw_writer import MmwWriter
+from mmweaver.core.boards import AWR1843, PRESETS
 from mmweaver.core.errors import MAX_CHARACTERS, InputError
-from mmweaver.core.presets import AWR1843, PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PointCloud, PoseSequence, RadarCube
 from mmweaver.core.safe_files.safe_zarr import open_zarr

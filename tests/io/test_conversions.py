@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mmweaver.core.presets import BGT60
+from mmweaver.core.boards import BGT60
 from mmweaver.core.records import CubeGrid, PointCloud, RadarCube
 from mmweaver.io.conversions import to_dataset, to_tensors
 

@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
+from mmweaver.core.boards import AWR1843, BGT60
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843, BGT60
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.seeding import stream

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import AWR1843, MMMESH
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843, MMMESH
 from mmweaver.core.records import CubeGrid, PointCloud, PoseSequence, RadarCube
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import JOINT_NAMES

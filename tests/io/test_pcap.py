@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from mmweaver.core.errors import InputError
-from mmweaver.io.pcap import MAGIC, udp_packets
+from mmweaver.io.dca_packets import MAGIC, udp_packets
 from tests.captures import START_S, pcap_of
 
 PACKETS = [(START_S, b"first packet"), (START_S + 0.5, b"x"), (START_S + 1.25, bytes(1466))]

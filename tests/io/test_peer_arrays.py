@@ -4,8 +4,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import HUPR, MMMESH, RF_GENESIS
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import HUPR, MMMESH, RF_GENESIS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
 from mmweaver.io.peer_arrays import detect_layout, read_cubelearn, read_hupr, read_mmmesh, read_rf_genesis

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from mmweaver.core.boards import AWR1843, BGT60, PRESETS
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843, BGT60, PRESETS
 from mmweaver.io.radar_file import describe_radar, load_radar
 
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import ANTENNAS
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import ANTENNAS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.transmit_code import weights_of
 from mmweaver.io.radar_file import load_radar

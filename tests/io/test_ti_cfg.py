@@ -5,11 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.core.antenna_tables import AntennaTable
+from mmweaver.core.boards import ANTENNAS
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import ANTENNAS
 from mmweaver.core.transmit_code import weights_of
-from mmweaver.core.virtual_array import azimuth_row, has_elevation
+from mmweaver.core.virtual_array import AntennaTable, azimuth_row, has_elevation
 from mmweaver.io.radar_options import RadarOptions
 from mmweaver.io.ti_cfg import read_ti_cfg
 

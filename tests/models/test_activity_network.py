@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 import torch
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.datasets.dataset_plan import ACTIVITIES
 from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork, load_activity
 from mmweaver.models.weights import WeightsCard, save_weights

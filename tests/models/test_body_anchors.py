@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.core.presets import PRESETS
+from mmweaver.core.boards import PRESETS
 from mmweaver.core.records import Plane
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.models.body_anchors import MIRRORED, NUM_REFLECTORS, Anchors, ghost_anchors

@@ -6,7 +6,7 @@ import torch
 
 from mmweaver.core.skeleton import JOINT_NAMES, joint
 from mmweaver.models.body_anchors import NUM_GHOSTS, NUM_REFLECTORS
-from mmweaver.models.body_prior import BOTH_WAYS, body_prior, ghost_section
+from mmweaver.models.scatterer_network import BOTH_WAYS, body_prior, ghost_section
 from mmweaver.propagation.body_model import ScatteringBody
 from tests.rooms import STANDING_M
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import torch
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import CubeGrid, RadarCube
-from mmweaver.models.log_maps import MIDDLE_DB, NUM_AZIMUTHS, SPREAD_DB, WIDEST_DEG, LogMaps
+from mmweaver.models.frame_motion import MIDDLE_DB, NUM_AZIMUTHS, SPREAD_DB, WIDEST_DEG, LogMaps
 from mmweaver.signal.spectra import range_azimuth_power, range_doppler_power
 
 

@@ -6,20 +6,18 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.compression.scatterers.cell_noise import cell_noise
-from mmweaver.core.presets import AWR1843, HUPR
+from mmweaver.compression.scatterers.layers import cell_noise
+from mmweaver.core.boards import AWR1843, HUPR
 from mmweaver.core.records import Scene
 from mmweaver.models.frame_motion import FrameMotion
-from mmweaver.models.learned_second_order import second_order_paths
-from mmweaver.models.neural_path_solver import LearnedRoom
-from mmweaver.models.room_inputs import GivenRoom
+from mmweaver.models.neural_path_solver import LearnedRoom, second_order_paths
 from mmweaver.models.scatterer_network import WeaverNetwork
+from mmweaver.models.scene_tensors import GivenRoom
 from mmweaver.propagation.adc_synthesis import phasor
 from mmweaver.propagation.body_model import body_of
-from mmweaver.propagation.mean_scatterers import MeanEchoes
-from mmweaver.propagation.multi_person_paths import PeoplePaths
+from mmweaver.propagation.mean_power import MeanEchoes
 from mmweaver.propagation.paths import Interaction, Paths
-from mmweaver.propagation.ray_traced import Simulator
+from mmweaver.propagation.ray_traced import PeoplePaths, Simulator
 from mmweaver.propagation.speckle import sample_moving, sample_moving_segments
 from mmweaver.propagation.static_paths import FIRST_ORDER
 from mmweaver.scene.procedural.procedural_room import make_room

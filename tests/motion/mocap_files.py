@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from mmweaver.core.skeleton import JOINT_NAMES, PARENTS
-from mmweaver.motion.animation.resample import resample
+from mmweaver.motion.animation.root_path import resample
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.timing import plan_motion
 from rooms import FLOOR_Z_M, WINDOW_M, room

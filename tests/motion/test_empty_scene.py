@@ -1,6 +1,6 @@
 import pytest
 
-from mmweaver.motion.empty_scene import NOBODY, says_nobody
+from mmweaver.motion.empty_floor import NOBODY, says_nobody
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from mmweaver import Weaver
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.stages import Stages
 from mmweaver.models.methods import METHODS, Physics

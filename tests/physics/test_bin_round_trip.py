@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.core.presets import AWR1843, HUPR, MMMESH
+from mmweaver.core.boards import AWR1843, HUPR, MMMESH
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, RadarCube
 from mmweaver.core.seeding import stream

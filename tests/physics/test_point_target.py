@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mmweaver.core.boards import AWR1843, BGT60, HUPR, MMMESH
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
-from mmweaver.core.presets import AWR1843, BGT60, HUPR, MMMESH
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PointCloud
 from mmweaver.core.seeding import stream

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.propagation.adc_synthesis import AdcSynthesis
 from mmweaver.propagation.paths import ApparentPoint, Interaction, Paths
 from mmweaver.propagation.reference_sum import exact_frame

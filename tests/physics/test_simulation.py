@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import torch
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
-from mmweaver.core.presets import AWR1843
 from mmweaver.motion.micro_motion import STILL, MicroMotionSettings
 from mmweaver.propagation.adc_synthesis import AdcSynthesis
 from mmweaver.propagation.antenna import scatterer_gain, specular_gain

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.core.presets import ANTENNAS, halfwave_positions, ti_board
+from mmweaver.core.boards import ANTENNAS, halfwave_positions, ti_board
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.transmit_code import tx_code_of

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import torch
 
+from mmweaver.core.boards import AWR1843, HUPR
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
-from mmweaver.core.presets import AWR1843, HUPR
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.propagation.adc_synthesis import AdcSynthesis
 from mmweaver.propagation.paths import ApparentPoint, Interaction, Paths, ScenePaths, StaticPaths

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 import torch
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import RadarCube, Scene
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scatterer_network import WeaverNetwork
-from mmweaver.propagation.background import BackgroundRecording, agreeing_gain
 from mmweaver.propagation.cube_rendering import CubeRenderer
 from mmweaver.propagation.paths import Interaction, StaticPaths
 from mmweaver.propagation.ray_traced import Simulator
+from mmweaver.propagation.receiver import BackgroundRecording, agreeing_gain
 from mmweaver.propagation.static_paths import scattered_paths
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.signal.cube import radar_cube

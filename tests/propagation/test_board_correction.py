@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from mmweaver.core.board import Board
+from mmweaver.core.boards import AWR1843, BGT60
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843, BGT60
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.propagation.adc_synthesis import AdcSynthesis

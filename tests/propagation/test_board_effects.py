@@ -7,8 +7,7 @@ import pytest
 import torch
 
 from mmweaver.core.board import Board
-from mmweaver.core.boards import typical_board
-from mmweaver.core.presets import AWR1843, HUPR
+from mmweaver.core.boards import AWR1843, HUPR, typical_board
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.stages import Stages

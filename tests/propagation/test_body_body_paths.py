@@ -5,13 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import PoseSequence
 from mmweaver.propagation.body_model import body_of
 from mmweaver.propagation.body_paths import BodyPaths
-from mmweaver.propagation.multi_person_paths import PeoplePaths
 from mmweaver.propagation.paths import Interaction, Paths
-from mmweaver.propagation.ray_traced import Simulator
+from mmweaver.propagation.ray_traced import PeoplePaths, Simulator
 from mmweaver.propagation.receiver import IDEAL
 from mmweaver.propagation.skin_scattering import LAMBERT, SkinEcho
 from mmweaver.propagation.static_paths import Propagation

@@ -6,7 +6,7 @@ import weakref
 import numpy as np
 import pytest
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import PoseSequence
 from mmweaver.propagation.body_model import body_of
 from mmweaver.propagation.body_paths import BodyPaths

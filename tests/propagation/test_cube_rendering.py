@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.core.presets import AWR1843, HUPR
+from mmweaver.core.boards import AWR1843, HUPR
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.transmit_code import tx_code_of
 from mmweaver.propagation.adc_synthesis import AdcSynthesis
 from mmweaver.propagation.cube_rendering import CubeRenderer
-from mmweaver.propagation.frame_clock import FrameClock
-from mmweaver.propagation.paths import ApparentPoint, Interaction, Paths, StaticPaths
+from mmweaver.propagation.paths import ApparentPoint, FrameClock, Interaction, Paths, StaticPaths
 from mmweaver.propagation.reference_sum import exact_frame
 from mmweaver.propagation.static_paths import scattered_paths
 from mmweaver.signal.cube import cube_values

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.stages import Stages
 from mmweaver.models.methods import Physics
 from mmweaver.propagation.diffuse_clutter import diffuse_clutter, room_level, seed_of_room

@@ -6,8 +6,8 @@ import numpy as np
 
 from mmweaver.core.ray_caster import RayCaster
 from mmweaver.propagation.edge_scattering import find_edges
+from mmweaver.scene.photo_files import sample_photo
 from mmweaver.scene.reconstruction import reconstruct
-from mmweaver.scene.sample_photo import sample_photo
 
 CELL_M = 0.035
 SLOPE = np.tan(np.deg2rad(12.0))  # of the rim to the rows of cells

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import Plane
 from mmweaver.propagation.image_method import specular_paths, specular_reflectors
 from mmweaver.propagation.paths import Interaction, StaticPaths

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.propagation.mean_power import MeanPower
 from mmweaver.signal.point_response import Points

@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import PoseSequence
 from mmweaver.propagation.body_model import body_of
-from mmweaver.propagation.multi_person_paths import PeoplePaths
-from mmweaver.propagation.ray_traced import Simulator
+from mmweaver.propagation.ray_traced import PeoplePaths, Simulator
 from mmweaver.propagation.receiver import IDEAL
 from mmweaver.propagation.static_paths import AS_PUBLISHED
 from tests.rooms import back_wall, floor, scene_of, side_wall, standing_person

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.propagation.antenna import pattern
-from mmweaver.propagation.mean_scatterers import MeanEchoes
+from mmweaver.propagation.mean_power import MeanEchoes
 from mmweaver.propagation.radar_equation import carrier, direction_loss_db, points_of
 from mmweaver.signal.point_response import PointResponse
 

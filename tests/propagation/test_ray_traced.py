@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.propagation.ray_traced import Simulator
 from mmweaver.propagation.receiver import IDEAL
 from tests.rooms import back_wall, floor, scene_of, side_wall, standing_person

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import AdcCube
+from mmweaver.propagation.occlusion import Visibility
 from mmweaver.propagation.ray_traced import Simulator
 from mmweaver.propagation.receiver import IDEAL, Impairments
 from mmweaver.propagation.resynthesis import Resynthesis, TracedMotion
 from mmweaver.propagation.static_paths import AS_PUBLISHED
 from mmweaver.propagation.static_paths_store import room_arrays, room_of, room_words
-from mmweaver.propagation.visibility import Visibility
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.signal.cube import cube_values, radar_cube
 from tests.rooms import standing_person
@@ -95,11 +95,11 @@ def test_no_ray_caster_is_needed():
 import sys
 sys.modules["embreex"] = None
 import numpy as np
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.propagation.resynthesis import TracedMotion, Resynthesis
 from mmweaver.propagation.paths import Interaction, StaticPaths
 from mmweaver.propagation.static_paths import AS_PUBLISHED, PreparedRoom
-from mmweaver.propagation.visibility import Visibility
+from mmweaver.propagation.occlusion import Visibility
 from tests.rooms import STANDING_M
 
 vertex = np.ones((1, 3))

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.core.rotations import unit
 from mmweaver.propagation import antenna

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.body_capsules import CAPSULES, part_of
-from mmweaver.core.presets import AWR1843
 from mmweaver.core.ray_caster import RayCaster
 from mmweaver.motion.micro_motion import STILL
 from mmweaver.propagation.body_model import ScatteringBody

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.propagation.materials import MATERIALS, transmission
 from mmweaver.propagation.paths import Interaction, StaticPaths
 from mmweaver.propagation.static_paths import Propagation, RayTracedRoom

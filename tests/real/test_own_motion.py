@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from mmweaver.core.skeleton import joint
+from mmweaver.motion.mocap.clip import resampled_clip
 from mmweaver.motion.mocap.clip_placement import place_clip
-from mmweaver.motion.mocap.clip_resampling import resampled_clip
-from mmweaver.motion.mocap.humanml3d import CONTACTS, joints_from_features
-from mmweaver.motion.mocap.joint_arrays import clips_of
+from mmweaver.motion.mocap.joint_arrays import CONTACTS, clips_of, joints_from_features
 from mmweaver.motion.mocap.read_motion import read_motion
 from studies.motion.humanml3d_features import features_from_joints
 from studies.motion.motiongpt_data import wide_room

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.core.presets import BGT60, halfwave_positions
+from mmweaver.core.boards import BGT60, halfwave_positions
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import RadarCube
 from mmweaver.io.dca1000 import read_bin

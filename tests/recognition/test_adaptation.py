@@ -5,7 +5,8 @@ import pytest
 
 pytest.importorskip("sklearn")
 
-from mmweaver.recognition.adaptation import (
+from mmweaver.recognition.point_recordings import PointRecording
+from mmweaver.recognition.train_recogniser import (
     fewest_recordings,
     following,
     generated_worth,
@@ -13,7 +14,6 @@ from mmweaver.recognition.adaptation import (
     self_trained,
     smoothed_votes,
 )
-from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindows
 from mmweaver.recognition.tree_ensemble import joined_trees, read_trees, write_trees
 from tests.recognition.clouds import recording_of

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mmweaver.core.presets import IWR1443_RADHAR
+from mmweaver.core.boards import IWR1443_RADHAR
 from mmweaver.core.seeding import stream
 from mmweaver.propagation.ray_traced import Simulator
 from mmweaver.recognition.random_scene import CHEST_M, Panel, Variation, hung_high, random_scene, sample_variation

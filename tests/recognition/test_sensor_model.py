@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import IWR1443_RADHAR, PRESETS
 from mmweaver.core.firmware_settings import FirmwareSettings
-from mmweaver.core.presets import IWR1443_RADHAR, PRESETS
 from mmweaver.core.records import PointCloud
+from mmweaver.recognition.generated_sequences import AT_M, PointRadar, diffuse_clutter, observed_cloud
 from mmweaver.recognition.random_scene import Variation
-from mmweaver.recognition.sensor_model import AT_M, PointRadar, diffuse_clutter, observed_cloud
 from mmweaver.recognition.subject_simulation import Performance, PerformancePrior, perform, performer
 
 FRAMES, HIGH_M, DOWN_DEG = 3, 2.6, 30.0

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import AdcCube
 from mmweaver.propagation.reference_sum import exact_frame
 from mmweaver.recordings.analysis import RecordingAnalysis, analyse_recording

@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 
 from mmweaver.cli.main import main
+from mmweaver.core.boards import ANTENNAS, AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import ANTENNAS, AWR1843
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.io.dca1000 import adc_of_words, upright, words_of, write_bin
 from mmweaver.io.radar_file import load_radar
 from mmweaver.io.radar_options import RadarOptions
+from mmweaver.recordings.frame_boundaries import agreements
 from mmweaver.recordings.plausibility import BETTER_ORDER, implausible
 from mmweaver.recordings.processing import process_recording
-from mmweaver.recordings.transmitter_order import agreements
 from mmweaver.signal.cube import radar_cube
 
 RADAR = replace(AWR1843, num_loops=16, num_samples=64, sample_rate_hz=1.13e6, first_range_bin=0, num_range_bins=64)

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import BGT60
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import BGT60
 from mmweaver.core.records import CameraIntrinsics
 from mmweaver.core.seeding import stream
 from mmweaver.propagation.ray_traced import Simulator

@@ -5,8 +5,8 @@ from unittest.mock import patch
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.core.radar_pose import AT_CAMERA, RadarPose
 from mmweaver.core.records import PoseSequence, RadarCube, Scene
 from mmweaver.core.skeleton import joint

@@ -8,8 +8,8 @@ from PIL import Image
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.pinhole import resized
+from mmweaver.scene.photo_files import sample_photo
 from mmweaver.scene.realsense_bag import is_bag, read_bag_photo
-from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.weaver.front_door import Weaver
 
 pytest.importorskip("rosbags")

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from mmweaver.core.records import Scene
+from mmweaver.scene.photo_files import sample_photo
 from mmweaver.scene.reconstruction import reconstruct
-from mmweaver.scene.sample_photo import sample_photo
 
 TOOLS = Path(__file__).resolve().parents[2] / "tools"
 

@@ -11,7 +11,7 @@ from PIL import Image
 from mmweaver.core.errors import InputError
 from mmweaver.core.pinhole import resized, rotated_clockwise
 from mmweaver.core.records import RgbdPhoto
-from mmweaver.scene.sample_photo import sample_photo
+from mmweaver.scene.photo_files import sample_photo
 from mmweaver.scene.scan_folders import read_scan_photo, scan_kind
 from mmweaver.weaver.front_door import Weaver
 

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube
 from mmweaver.core.seeding import stream
-from mmweaver.signal.cfar import CfarCells, ca_cfar, ca_factor
 from mmweaver.signal.cube import radar_cube
+from mmweaver.signal.points import CfarCells, ca_cfar, ca_factor
 
 RATES = [1e-2, 1e-3, 1e-4]
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import AWR1843, BGT60, HUPR, IWR6843, MMMESH, PRESETS
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843, BGT60, HUPR, IWR6843, MMMESH, PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.seeding import stream

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import AWR1843, BGT60
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843, BGT60
 from mmweaver.signal.detection import check_points, detect
 from mmweaver.signal.firmware import FirmwareCloud, firmware_points
 from mmweaver.signal.points import point_cloud

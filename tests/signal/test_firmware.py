@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import BGT60, IWR1443_MARS, IWR1443_RADHAR
 from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareCfar, FirmwareSettings
-from mmweaver.core.presets import BGT60, IWR1443_MARS, IWR1443_RADHAR
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.seeding import stream

@@ -7,7 +7,7 @@ import pytest
 import torch
 
 from mmweaver.compression.signal_field import finer_grid
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid
 from mmweaver.signal.point_response import PointResponse, Points

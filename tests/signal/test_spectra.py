@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import AWR1843, BGT60
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843, BGT60
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.signal.spectra import (

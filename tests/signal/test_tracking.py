@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.records import PointCloud
-from mmweaver.signal.clustering import dbscan
-from mmweaver.signal.tracking import cluster_points, track_people
+from mmweaver.signal.tracking import cluster_points, dbscan, track_people
 
 PERIOD_S = 0.1
 

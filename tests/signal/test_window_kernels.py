@@ -2,8 +2,7 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.signal.window_kernels import WindowKernel
-from mmweaver.signal.windows import doppler_window, doppler_window_middle, hann
+from mmweaver.signal.windows import WindowKernel, doppler_window, doppler_window_middle, hann
 
 
 @pytest.mark.parametrize("num", [1, 2, 3, 16, 85, 256])

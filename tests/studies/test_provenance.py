@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mmweaver.core.version import __version__
+from mmweaver.core.constants import __version__
 from studies.provenance import hardware, provenance
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid, PointCloud, RadarCube
 from mmweaver.studio import sessions
 from mmweaver.studio.service import comparison

@@ -5,8 +5,8 @@ import threading
 
 import pytest
 
-from mmweaver.studio import jobs
-from mmweaver.studio.jobs import BusyError, Jobs
+from mmweaver.studio import server
+from mmweaver.studio.server import BusyError, Jobs
 
 
 def test_first_come_first_served():
@@ -42,7 +42,7 @@ def test_who_leaves_is_not_served():
 
 
 def test_too_many_are_refused(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(jobs, "MAX_WAITING", 2)
+    monkeypatch.setattr(server, "MAX_WAITING", 2)
 
     async def ask() -> None:
         queue, hold = Jobs(1), threading.Event()

@@ -11,7 +11,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence
 from mmweaver.studio.live import Live
 from mmweaver.studio.schemas import Form
-from mmweaver.viz.wire import unpack
+from mmweaver.viz.body_in_photo import unpack
 from mmweaver.weaver.streaming import StreamChunk
 
 

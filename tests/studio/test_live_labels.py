@@ -10,7 +10,7 @@ from mmweaver.recognition.recogniser import load_recogniser, save_recogniser
 from mmweaver.studio.live import Live
 from mmweaver.studio.schemas import Form
 from mmweaver.studio.service import Offered, Service
-from mmweaver.viz.wire import unpack
+from mmweaver.viz.body_in_photo import unpack
 from tests.recognition.small_recogniser import small_recogniser
 
 TASK = """radar = "awr1843"

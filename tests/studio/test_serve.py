@@ -20,8 +20,8 @@ from mmweaver import Weaver
 from mmweaver.studio import sessions
 from mmweaver.studio.server import StudioServer
 from mmweaver.studio.service import Service
+from mmweaver.viz.body_in_photo import unpack
 from mmweaver.viz.sequence import make_playback
-from mmweaver.viz.wire import unpack
 
 TEXTS = ("a person walks to the left", "a person claps", "a person sits down", "a person waves")
 ROOM_FOR = 12_000_000  # bytes of results: about four of them

@@ -22,14 +22,14 @@ from starlette.websockets import WebSocketDisconnect
 
 from mmweaver import Weaver
 from mmweaver.cli.main import main
+from mmweaver.core.boards import PRESETS
 from mmweaver.core.errors import NoRoomError
-from mmweaver.core.presets import PRESETS
 from mmweaver.io.npz_files import read_npz
 from mmweaver.studio.exports import EXPORTS
 from mmweaver.studio.server import StudioServer
 from mmweaver.studio.service import Service
 from mmweaver.studio.uploads import safe_name
-from mmweaver.viz.wire import unpack
+from mmweaver.viz.body_in_photo import unpack
 
 WALK = {"room": "demo", "text": ["a person walks to the left"], "seed": 1}
 HOST = "http://127.0.0.1:8765"

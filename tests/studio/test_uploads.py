@@ -8,11 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.core.boards import find_board
+from mmweaver.core.boards import PRESETS, find_board
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import PRESETS
 from mmweaver.scene.photo.estimated_depth import EstimatedDepth
-from mmweaver.scene.sample_photo import sample_photo
+from mmweaver.scene.photo_files import sample_photo
 from mmweaver.studio import uploads
 from mmweaver.studio.service import RecoverableError
 from mmweaver.studio.sessions import Session, Sessions

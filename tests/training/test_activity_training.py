@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 import torch
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.models.activity_network import ActivityNetwork
 from mmweaver.training.activity_training import (
     TRAIN_MAPS,

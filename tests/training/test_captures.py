@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.io.npz_files import read_poses_npz, read_radar_npz, write_radar_npz
-from mmweaver.scene.sample_photo import sample_photo
+from mmweaver.scene.photo_files import sample_photo
 from mmweaver.training.captures import read_capture, rooms_of
 from mmweaver.weaver.front_door import Weaver
 

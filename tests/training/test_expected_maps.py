@@ -8,8 +8,7 @@ import torch
 
 from mmweaver.datasets.dataset_store import StoredRoom, read_rooms
 from mmweaver.propagation.mean_power import PowerMaps
-from mmweaver.training.expected_maps import ExpectedMaps
-from mmweaver.training.network_examples import examples, power_maps
+from mmweaver.training.network_examples import ExpectedMaps, examples, power_maps
 
 pytest.importorskip("zarr")
 REALIZATIONS = 16

@@ -3,9 +3,8 @@
 import numpy as np
 import torch
 
-from mmweaver.core.presets import AWR1843
-from mmweaver.propagation.mean_power import MeanPower
-from mmweaver.propagation.mean_scatterers import MeanEchoes
+from mmweaver.core.boards import AWR1843
+from mmweaver.propagation.mean_power import MeanEchoes, MeanPower
 from mmweaver.propagation.radar_equation import points_of
 from mmweaver.training.network_loss import STEEPEST, Targets, itakura_saito, weaver_loss
 

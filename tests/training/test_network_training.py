@@ -28,7 +28,7 @@ def rooms(tiny_signals: Path) -> list[RoomExamples]:
 def test_interrupted_training_equals_an_uninterrupted_one(
     tiny_signals: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
-    monkeypatch.setattr("mmweaver.training.resuming.SAVE_EVERY_S", 0.0)
+    monkeypatch.setattr("mmweaver.training.trainer.SAVE_EVERY_S", 0.0)
     whole = train(tiny_signals, tmp_path / "whole", RECIPE)
 
     def stop(progress):

@@ -7,9 +7,8 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.evaluation.pose_errors import joint_errors_cm
-from mmweaver.recognition.pose_estimator import PoseEstimator
 from mmweaver.recognition.task_file import RecordingSettings
-from mmweaver.recognition.train_pose import posed_frames
+from mmweaver.recognition.train_pose import PoseEstimator, posed_frames
 from mmweaver.training.pose_training import Disturbance, PoseRecipe, PoseWindows, mean_pose_m, train_pose
 from tests.training.moving_arm import moving_arm
 

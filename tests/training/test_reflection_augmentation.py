@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.skeleton import joint
 from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.models.scene_tensors import SceneTensors

@@ -6,7 +6,7 @@ import pytest
 import torch
 
 from mmweaver.core.errors import InputError
-from mmweaver.training.resuming import Resumable
+from mmweaver.training.trainer import Resumable
 
 
 def run(file: Path | None, steps: int) -> tuple[torch.nn.Module, Resumable]:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from mmweaver.training.run_log import RunLog
+from mmweaver.training.trainer import RunLog
 
 
 def figures(step: int, validation: float | None = None) -> dict[str, Any]:

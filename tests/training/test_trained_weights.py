@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.datasets.dataset_store import read_rooms
 from mmweaver.models.activity_network import load_activity
 from mmweaver.training.activity_training import TRAIN_SPLITS, ActivityRecipe, train_activity, write_activity_weights

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.propagation.mean_power import PowerMaps
 from mmweaver.training.validation_sheet import confusion, differences_db, draw_confusion, draw_sheet
 

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.datasets.dataset_plan import DatasetPlan
 from mmweaver.datasets.generate_rooms import generate_dataset
 

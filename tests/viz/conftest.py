@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.aligned_photo import AlignedPhoto
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import CameraIntrinsics, CubeGrid, PointCloud, PoseSequence, RadarCube, RgbdPhoto
 from mmweaver.core.seeding import stream
 from mmweaver.signal.windows import hann

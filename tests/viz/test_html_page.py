@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from mmweaver.viz.body_in_photo import unpack
 from mmweaver.viz.html_page import offline_page, page_file
 from mmweaver.viz.sequence import Playback
-from mmweaver.viz.wire import unpack
 
 SEQUENCE = Playback(header={"frames": 1}, arrays={"range_time": np.zeros((1, 4), np.uint8)})
 

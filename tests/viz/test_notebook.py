@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from mmweaver.viz.body_in_photo import unpack
 from mmweaver.viz.html_page import page_file
 from mmweaver.viz.notebook import player_widget
 from mmweaver.viz.sequence import Playback
-from mmweaver.viz.wire import unpack
 
 
 def test_the_widget_holds_script_and_data():

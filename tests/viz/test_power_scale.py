@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mmweaver.viz.power_scale import MIN_ABOVE_NOISE_DB, PowerScale
+from mmweaver.viz.theme import MIN_ABOVE_NOISE_DB, PowerScale
 
 
 def test_levels_are_absolute_where_the_scale_is_known():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from mmweaver.core.presets import AWR1843, BGT60, PRESETS
+from mmweaver.core.boards import AWR1843, BGT60, PRESETS
 from mmweaver.core.records import CubeGrid, PointCloud, RadarCube
 from mmweaver.viz.figure_data import FigureData
 from mmweaver.viz.preview import draw_preview

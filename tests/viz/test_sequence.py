@@ -5,8 +5,7 @@ import pytest
 
 from mmweaver import Weaver
 from mmweaver.core.skeleton import joint
-from mmweaver.viz.room import room_playback
-from mmweaver.viz.sequence import Playback, make_playback
+from mmweaver.viz.sequence import Playback, make_playback, room_playback
 from mmweaver.weaver.generation import Generation
 
 

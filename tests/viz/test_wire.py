@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.errors import InputError
-from mmweaver.viz.wire import pack, unpack
+from mmweaver.viz.body_in_photo import pack, unpack
 
 
 def test_header_and_arrays_come_back():

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, PointCloud, RadarCube
 from mmweaver.core.seeding import stream

@@ -9,8 +9,8 @@ import pytest
 
 import mmweaver
 from mmweaver.core.board import Board
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.core.stages import Stages

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.core.registry import Registry
 from mmweaver.weaver import register
 

@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
+from mmweaver.core.boards import AWR1843, MMMESH
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843, MMMESH
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.weaver import parsed_request as module
 from mmweaver.weaver.parsed_request import MAX_FRAMES, ParsedRequest, parse

@@ -8,7 +8,7 @@ import pytest
 import torch
 from torch import nn
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import CubeGrid, PointCloud, RadarCube
 from mmweaver.models.methods import Physics, Signal
 from mmweaver.signal.points import point_cloud

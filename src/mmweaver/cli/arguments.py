@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Literal, NoReturn, get_args, get_origin
 
+from mmweaver.core.constants import __version__
 from mmweaver.core.errors import InputError
 from mmweaver.core.options import (
     Setting,
@@ -23,7 +24,6 @@ from mmweaver.core.options import (
     read_word,
     write_word,
 )
-from mmweaver.core.version import __version__
 
 REQUEST_FILE = "request.toml"
 HELP_ALL = "--help-all"
@@ -370,7 +370,7 @@ def _file_value(one: "dataclasses.Field[Any]", value: Any) -> Any:
 
 def _is_file(path: Path, name: str) -> bool:
     """Whether a `Source` is a file or folder rather than a name."""
-    from mmweaver.core.presets import PRESETS
+    from mmweaver.core.boards import PRESETS
 
     return name not in PRESETS and name not in ("builtin", "small", "ideal", "typical") and path.exists()
 

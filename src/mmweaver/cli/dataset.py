@@ -131,8 +131,8 @@ def _run_rooms(asked: Options) -> int:
     from mmweaver.datasets.dataset_plan import MOST, DatasetPlan
     from mmweaver.datasets.dataset_store import PLAN_FILE
     from mmweaver.datasets.generate_rooms import check_packages, generate_dataset
+    from mmweaver.scene.procedural.arrangement import KINDS
     from mmweaver.scene.procedural.lighting import LIGHTINGS
-    from mmweaver.scene.procedural.room_kinds import KINDS
 
     out, workers = asked.out, asked.workers
     for name, limit in (("layouts", MOST), ("sequences", MOST), ("frames", MOST), ("workers", MAX_WORKERS)):

@@ -397,7 +397,7 @@ def _add_motion(asked: Options, request: Request, weaver: "Weaver") -> Request:
 
 def _motion_of_model(asked: Options, request: Request, is_of_all: bool, weaver: "Weaver") -> "MotionClip | None":
     """The motion that --motion-model generates from the text; None for a text that the library knows."""
-    from mmweaver.motion.language.sentence_parser import parse_sentence
+    from mmweaver.motion.language.sentence import parse_sentence
     from mmweaver.motion.motion_models import MotionTask, clip_of, load_motion_model
 
     assert isinstance(request.text, str)

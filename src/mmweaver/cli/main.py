@@ -10,8 +10,8 @@ from shutil import get_terminal_size
 from textwrap import fill
 from typing import TYPE_CHECKING
 
+from mmweaver.core.constants import __version__
 from mmweaver.core.errors import InputError
-from mmweaver.core.version import __version__
 
 if TYPE_CHECKING:
     from mmweaver.cli.arguments import General, Parser
@@ -139,7 +139,7 @@ def parser_of(*names: str, rare: bool = False) -> "tuple[Parser, dict[str, tuple
 
 def _run(argv: list[str]) -> int:
     from mmweaver.cli.arguments import HELP_ALL, parsed
-    from mmweaver.cli.log import set_up_log
+    from mmweaver.cli.progress import set_up_log
     from mmweaver.core.atomic_files import forget_written
 
     parser, commands = parser_of(*argv[:1], rare=HELP_ALL in argv)

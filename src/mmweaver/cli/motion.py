@@ -35,9 +35,8 @@ class Options(Printed):
 
 def run(asked: Options) -> int:
     """Animates the sentence and writes the requested files. Raises InputError."""
-    from mmweaver.motion.empty_floor import act_out
-    from mmweaver.motion.empty_scene import says_nobody
-    from mmweaver.motion.language.step_names import doing
+    from mmweaver.motion.empty_floor import act_out, says_nobody
+    from mmweaver.motion.language.postures import doing
 
     _check_files(asked)
     if says_nobody(asked.text):

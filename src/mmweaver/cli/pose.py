@@ -28,7 +28,7 @@ def run(asked: Options) -> int:
     from mmweaver.core.output_checks import check_output_folder
     from mmweaver.io.npz_files import write_pose_npz
     from mmweaver.recognition.point_recordings import read_task_recording
-    from mmweaver.recognition.pose_estimator import load_estimator
+    from mmweaver.recognition.train_pose import load_estimator
     from mmweaver.viz.motion_strip import draw_pose_strips
 
     files = ("pose.npz", "pose.png")

@@ -38,7 +38,7 @@ def run(asked: Options) -> int:
 
 def _presets(*, as_json: bool) -> str:
     """All presets: one line each, or their RadarConfigs as one JSON object."""
-    from mmweaver.core.presets import PRESETS
+    from mmweaver.core.boards import PRESETS
 
     if as_json:
         return json.dumps({name: config.to_values() for name, config in PRESETS.items()}, indent=2)

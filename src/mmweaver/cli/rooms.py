@@ -39,10 +39,10 @@ def run(asked: Options) -> int:
     from mmweaver.cli.progress import StageBar
     from mmweaver.core.atomic_files import staged_folder
     from mmweaver.core.output_checks import check_output_folder
+    from mmweaver.scene.procedural.arrangement import KINDS
     from mmweaver.scene.procedural.lighting import LIGHTINGS
     from mmweaver.scene.procedural.procedural_room import MAX_LAYOUTS, make_room
     from mmweaver.scene.procedural.room_files import write_room
-    from mmweaver.scene.procedural.room_kinds import KINDS
 
     kinds = list(KINDS) if asked.rooms is None else [word.strip() for word in asked.rooms]
     for kind in kinds:

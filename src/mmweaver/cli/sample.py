@@ -29,7 +29,7 @@ class Options(Written):
 def run(asked: Options) -> int:
     """Writes all files or none. Raises InputError."""
     from mmweaver.core.output_checks import check_output_folder
-    from mmweaver.scene.sample_photo import SAMPLE_FOLDER
+    from mmweaver.scene.photo_files import SAMPLE_FOLDER
 
     bundled = sorted(file.name for file in SAMPLE_FOLDER.iterdir() if file.is_file() and file.suffix != ".webp")
     names = sorted([*bundled, PICTURE, RECORDING])
@@ -44,7 +44,7 @@ def _write(out: Path, source: Path, bundled: list[str], *, overwrite: bool) -> N
     from PIL import Image
 
     from mmweaver.core.atomic_files import staged_folder
-    from mmweaver.scene.sample_photo import sample_photo
+    from mmweaver.scene.photo_files import sample_photo
 
     with staged_folder(out, overwrite=overwrite) as stage:
         for name in bundled:

@@ -49,7 +49,7 @@ def run(asked: Options) -> int:
         raise InputError(f"--workers must be 1 to 64, not {asked.workers}")
     need("studio", "the studio")
     from mmweaver.recognition.recogniser import TREES_FILE
-    from mmweaver.studio.serve import serve
+    from mmweaver.studio.server import serve
 
     paths = asked.paths or []
     recognisers = [path for path in paths if (path / TREES_FILE).is_file()]

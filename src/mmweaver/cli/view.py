@@ -60,7 +60,7 @@ def _room(stored: "StoredResult") -> "Playback | None":
     if not stored.poses or not isinstance(inputs, dict):
         return None
     from mmweaver.viz.html_page import OFFLINE_ROOM_POINTS
-    from mmweaver.viz.room import room_playback
+    from mmweaver.viz.sequence import room_playback
     from mmweaver.weaver.front_door import Weaver
 
     weaver = Weaver(method="physics")

@@ -2,6 +2,8 @@
 
 All are quantised with one step: an error of one step in any value leaves about the same energy in the cube. Files of
 older versions, and older files of version 5, may also contain a low-rank layer and an enhancement layer.
+
+Read-only: the low-rank layer that files of versions 3 to 5 may contain. Encoders no longer write it.
 """
 
 import functools
@@ -17,11 +19,10 @@ import torch
 from jaxtyping import Complex
 from torch import Tensor
 
-from mmweaver.compression.beams import beams_of
+from mmweaver.compression.cell_coder import LevelCoder
 from mmweaver.compression.entropy import BitStream, Decoder
-from mmweaver.compression.low_rank import decode_low_rank
 from mmweaver.compression.noise_layer import NoiseLayer
-from mmweaver.compression.quantised_cells import QuantisedCells, code_cells
+from mmweaver.compression.quantised_cells import QuantisedCells, beams_of, code_cells
 from mmweaver.compression.scatterer_coder import (
     PointCoder,
     PointSteps,
@@ -39,6 +40,45 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
 from mmweaver.signal.point_response import PointResponse
+
+CORRELATED = True, False  # neighbouring rows of a factor predict each other's sign
+
+
+def decode_low_rank(
+    stream: BitStream, rank: int, shape: tuple[int, ...], step: float
+) -> Complex[np.ndarray, "frame range doppler antenna"]:
+    """Decodes a low-rank matrix (frame and range, Doppler and antenna) as values of a chunk.
+
+    Columns of the left factor have the strength of their component and the step of the chunk; rows of the right one
+    have unit norm, and that step divided by the strength of the decoded column.
+
+    Args:
+        stream: The decoder.
+        rank: Number of components.
+        shape: Shape (frame, range, doppler, antenna) of the chunk.
+        step: Quantisation step.
+
+    Returns:
+        Values of that shape, complex64.
+
+    Raises:
+        ValueError: For an impossible rank.
+    """
+    frames, num_range, doppler, antennas = shape
+    if rank > min(frames * num_range, doppler * antennas):
+        raise ValueError("impossible rank")
+    left, right = (_factor(stream, (rank, *axes)) for axes in ((frames * num_range, 1), (doppler, antennas)))
+    strength = np.maximum(np.sqrt(np.sum(np.square(np.abs(left)), axis=1)), 1.0)
+    return ((left * step).T @ (right / strength[:, None])).reshape(shape).astype(np.complex64)
+
+
+def _factor(stream: BitStream, shape: tuple[int, int, int]) -> np.ndarray:
+    """Levels of a factor, complex (rank, place)."""
+    levels = np.zeros((2, 1, int(np.prod(shape))), np.int64)
+    LevelCoder((1, *shape), CORRELATED).code(stream, levels, np.ones(shape, np.int64))
+    real, imaginary = levels.reshape(2, shape[0], -1)
+    return real + 1j * imaginary
+
 
 # frames, hop, peak, step, centroids of 1 and of more, noise, which of COARSE_STEPS and FINER_STEPS, rank, flags
 PREFIX = struct.Struct("<HHffBBBBBB")

@@ -11,8 +11,6 @@ from itertools import pairwise
 import numpy as np
 import torch
 
-from mmweaver.compression.active_mask import active_mask, active_power, cell_power
-from mmweaver.compression.beams import beams_of
 from mmweaver.compression.chunk import (
     HAS_CELLS,
     HAS_GAINS,
@@ -29,7 +27,7 @@ from mmweaver.compression.chunk import (
 )
 from mmweaver.compression.entropy import Encoder
 from mmweaver.compression.noise_layer import NoiseLayer, signal_filled, to_noise
-from mmweaver.compression.quantised_cells import code_cells, quantise
+from mmweaver.compression.quantised_cells import active_mask, active_power, beams_of, cell_power, code_cells, quantise
 from mmweaver.compression.rate_model import CellSample, Estimate
 from mmweaver.compression.scatterer_coder import (
     PointSteps,

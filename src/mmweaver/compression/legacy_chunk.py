@@ -14,7 +14,6 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Int
 
-from mmweaver.compression.beams import beams_of
 from mmweaver.compression.cell_coder import CLOSED, COARSE, FINE
 from mmweaver.compression.chunk import (
     HAS_GAINS,
@@ -24,6 +23,7 @@ from mmweaver.compression.chunk import (
     one_line_errors,
 )
 from mmweaver.compression.entropy import BitModel, BitStream, Decoder, Mixture, NumberModel
+from mmweaver.compression.quantised_cells import beams_of
 from mmweaver.compression.scatterer_coder import PointCoder, PointSteps, unpack_gains
 from mmweaver.compression.transforms import ChunkTransform, TransformChoice
 from mmweaver.core.radar_config import RadarConfig

@@ -9,15 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.compression.active_mask import active_mask
 from mmweaver.compression.chunk import DecodedChunk, decode_chunk
 from mmweaver.compression.legacy_chunk import decode_legacy_chunk
 from mmweaver.compression.mmw_container import LISTED, MAX_RATIO, MmwFile, header_for, pack_mmw
 from mmweaver.compression.optimiser import Optimiser, Progress, error_db
-from mmweaver.core.default_precision import single_precision
+from mmweaver.compression.quantised_cells import active_mask
 from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import cannot_write
 from mmweaver.core.records import CubeGrid, RadarCube
+from mmweaver.core.seeding import single_precision
 from mmweaver.core.shapes import CubeValues
 
 EFFORTS = "full", "fast"

@@ -22,8 +22,8 @@ import numpy as np
 
 from mmweaver.compression.checked_file import CHECK, PREFIX, CheckedFile, RecordPlace, checked, head_check
 from mmweaver.compression.entropy import VERSION
+from mmweaver.core.boards import PRESETS
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_text import parse_json
 

@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mmweaver.compression.active_mask import active_mask
 from mmweaver.compression.chunk import decode_chunk
 from mmweaver.compression.chunk_encoder import ChunkEncoder, ChunkMode, Scale, some_frames, split
+from mmweaver.compression.quantised_cells import active_mask
 from mmweaver.compression.rate_model import TINY, CellSample, Estimate
 from mmweaver.compression.transforms import MAX_DOPPLER, transform_choices
 from mmweaver.core.errors import InputError

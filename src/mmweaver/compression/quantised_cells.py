@@ -1,4 +1,9 @@
-"""Quantisation of a chunk's coefficients: which cells are open, how finely each is quantised, and their levels."""
+"""Quantisation of a chunk's coefficients: which cells are open, how finely each is quantised, and their levels.
+
+Cells that contain signal (encoder side).
+
+Unitary transform of the array's antennas to beams.
+"""
 
 from dataclasses import dataclass
 
@@ -7,6 +12,65 @@ from jaxtyping import Complex, Float, Int
 
 from mmweaver.compression.cell_coder import CLOSED, COARSE, FINE, ClassMapCoder, LevelCoder
 from mmweaver.compression.entropy import BitStream
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.shapes import CubeValues, RangeDopplerMask
+from mmweaver.core.virtual_array import SAME_PLACE_WAVELENGTHS
+
+
+def beams_of(config: RadarConfig) -> Complex[np.ndarray, "beam antenna"]:
+    """Unitary beamforming matrix: a DFT per row of the array, boresight in the middle, rows from low to high.
+
+    Args:
+        config: The radar, for its antenna positions.
+
+    Returns:
+        Matrix (beam, antenna), complex128.
+    """
+    position_m = config.antenna_position_m
+    height = np.round(position_m[:, 2] / (SAME_PLACE_WAVELENGTHS * config.wavelength_m))
+    beams = np.zeros((config.num_antennas, config.num_antennas), complex)
+    first = 0
+    for level in np.unique(height):
+        row = np.flatnonzero(height == level)
+        row = row[np.argsort(position_m[row, 0], kind="stable")]
+        num = len(row)
+        cycles = np.outer(np.arange(num) - num // 2, np.arange(num)) / num
+        beams[first : first + num, row] = np.exp(-2j * np.pi * cycles) / np.sqrt(num)
+        first += num
+    return beams
+
+
+ACTIVE_DB = 12.0  # above the noise floor, as in metrics.cells
+
+
+def active_mask(values: CubeValues, min_power: float | None = None) -> RangeDopplerMask:
+    """Marks the cells that contain signal.
+
+    Args:
+        values: Cube (frame, range, doppler, antenna).
+        min_power: Threshold on the power averaged over the antennas; by default 12 dB above its median.
+
+    Returns:
+        Mask (frame, range, doppler); all cells where none exceeds the threshold.
+    """
+    power = cell_power(values)
+    is_active = power > (active_power(power) if min_power is None else min_power)
+    return is_active if is_active.any() else np.ones_like(is_active)
+
+
+def cell_power(values: CubeValues) -> np.ndarray:
+    """Antenna-averaged power (frame, range, doppler), float64, since squares of 1e-30 underflow in float32."""
+    return np.mean(np.square(values.real, dtype=np.float64) + np.square(values.imag, dtype=np.float64), axis=-1)
+
+
+def active_power(power: np.ndarray) -> float:
+    """Threshold 12 dB above the median of cell powers.
+
+    Cells that are exactly zero, such as Doppler bins missing from a file, are excluded from the median.
+    """
+    some = power[power > 0]
+    return float(np.median(some) if len(some) else 0.0) * 10 ** (ACTIVE_DB / 10)
+
 
 Array = np.ndarray
 ROUNDING = 0.36  # values are rounded up from 1 - ROUNDING: small levels cost more bits than they save distortion

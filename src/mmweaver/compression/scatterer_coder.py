@@ -15,7 +15,7 @@ from jaxtyping import Float, Int
 from mmweaver.compression.cell_coder import ClassMapCoder, LevelCoder
 from mmweaver.compression.entropy import MAX_UNIFORM, BitModel, BitStream, NumberModel
 from mmweaver.compression.scatterers.fit_window import FitWindow
-from mmweaver.core.tensor_record import TensorRecord
+from mmweaver.core.tensor_files import TensorRecord
 from mmweaver.signal.point_response import Axes, PointResponse, Points
 
 Integers = Int[np.ndarray, "_"]

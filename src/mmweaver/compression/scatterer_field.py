@@ -13,10 +13,9 @@ import torch
 from jaxtyping import Complex
 from torch import Tensor
 
-from mmweaver.compression.scatterers.cell_noise import cell_noise, overlapping_noise
 from mmweaver.compression.scatterers.fit_window import FitWindow, long_window, overlap_hop
 from mmweaver.compression.scatterers.fitting import FitRecipe, fitted
-from mmweaver.compression.scatterers.layers import Layers, no_points, rendered
+from mmweaver.compression.scatterers.layers import Layers, cell_noise, no_points, overlapping_noise, rendered
 from mmweaver.compression.signal_field import Coordinates, SignalField, cells_at, coordinates_on
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.errors import InputError

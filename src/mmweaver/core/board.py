@@ -1,13 +1,15 @@
 """Board: hardware errors of one radar board that affect every signal, and its file, board.json.
 
 docs/board.md lists fields, units and where each enters the signal chain. The defaults describe an ideal board.
+
+Channel calibration as applied by a board's firmware: one complex factor per antenna pair, and a range bias.
 """
 
 import dataclasses
 import functools
 import hashlib
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -15,10 +17,61 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.atomic_files import atomic_file
+from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.record_values import record_fields
+from mmweaver.core.records import AdcCube
 from mmweaver.core.safe_files.safe_text import MEGABYTE, parse_json, read_text
+
+
+@dataclass(frozen=True, kw_only=True)
+class ChannelCalibration:
+    """Factors by which the firmware multiplies recorded samples, and the range bias of the board.
+
+    Attributes:
+        factors: Complex factors, (tx, rx).
+        range_bias_m: Measured minus true range in metres.
+        turns_receivers: Whether the factors also correct receivers with inverted feed (`rx_inverted`), which samples in
+            an `AdcCube` already have corrected. Default: False.
+    """
+
+    factors: np.ndarray
+    range_bias_m: float
+    turns_receivers: bool = False
+
+    def compensated(self, adc: AdcCube) -> AdcCube:
+        """Corrects recorded samples as the firmware does.
+
+        Args:
+            adc: Recorded samples.
+
+        Returns:
+            Samples without channel errors and range bias.
+        """
+        return self._applied(adc, self.factors, -self.range_bias_m)
+
+    def recorded(self, adc: AdcCube) -> AdcCube:
+        """Applies the board's errors to ideal samples; inverse of `compensated`.
+
+        Args:
+            adc: Ideal samples.
+
+        Returns:
+            Samples as this board would record them.
+        """
+        return self._applied(adc, 1 / self.factors, self.range_bias_m)
+
+    def _applied(self, adc: AdcCube, factors: np.ndarray, farther_m: float) -> AdcCube:
+        config = adc.config
+        beat_hz = 2 * config.chirp_slope_hz_per_s * farther_m / SPEED_OF_LIGHT_MPS
+        turn = np.exp(2j * np.pi * beat_hz * np.arange(config.num_samples) / config.sample_rate_hz)
+        if self.turns_receivers and config.rx_inverted:
+            factors = factors.copy()
+            factors[:, list(config.rx_inverted)] *= -1
+        samples = adc.samples * (factors[:, :, None] * turn).astype(np.complex64)
+        return replace(adc, samples=samples)
+
 
 BOARD_VERSION = 1
 MAX_BYTES = 4 * MEGABYTE

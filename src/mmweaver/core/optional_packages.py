@@ -1,8 +1,26 @@
-"""Optional packages, by the extra that installs them."""
+"""Optional packages, by the extra that installs them.
 
+Silences logging while the Hub client reports every retry; the user gets one error line instead.
+"""
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib.util import find_spec
 
 from mmweaver.core.errors import InputError
+
+
+@contextmanager
+def hub_log_off() -> Iterator[None]:
+    """Context in which all logging is suppressed."""
+    before = logging.root.manager.disable
+    logging.disable(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        logging.disable(before)
+
 
 # module -> package for each extra named in error messages; a test compares this with pyproject.toml and all imports
 EXTRAS: dict[str, dict[str, str]] = {

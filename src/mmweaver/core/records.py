@@ -11,7 +11,7 @@ import numpy as np
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import AT_CAMERA, RadarPose
-from mmweaver.core.record_display import ShownByFacts, span
+from mmweaver.core.record_values import ShownByFacts, span
 from mmweaver.core.shapes import (
     AdcValues,
     AntennaPositions,

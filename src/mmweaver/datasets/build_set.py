@@ -53,7 +53,7 @@ from mmweaver.datasets.paired_sampling import (
 from mmweaver.datasets.signals_on_demand import SetGeometry, moving_power_db, storable
 from mmweaver.datasets.zarr_arrays import packed_iq
 from mmweaver.io.npz_files import read_npz, write_npz
-from mmweaver.motion.worded_activities import activities_of
+from mmweaver.motion.register_activity import activities_of
 from mmweaver.signal.features import point_table
 from mmweaver.weaver.front_door import Weaver, compose_request
 from mmweaver.weaver.generation import Room

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.core.atomic_files import create_once
+from mmweaver.core.constants import __version__
 from mmweaver.core.safe_files.safe_text import read_json
-from mmweaver.core.version import __version__
 from mmweaver.datasets.activity_store import SET_FILE, STORE, made_by
 from mmweaver.datasets.dataset_plan import command_of
 from mmweaver.datasets.dataset_store import read_plan

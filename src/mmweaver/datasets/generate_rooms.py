@@ -1,21 +1,259 @@
-"""Generates the missing rooms of a data set on the cores of this machine or on a Ray cluster."""
+"""Generates the missing rooms of a data set on the cores of this machine or on a Ray cluster.
 
+Writes data sets: the root, and each room under a temporary name that is replaced once it is complete.
+
+A kill at any instant loses only unfinished rooms, and several processes may work on one set. The root follows from
+plan.json, which the first process creates; each process completes what is missing. Layout: `dataset_store`.
+"""
+
+import hashlib
+import json
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
+import numpy as np
+
+from mmweaver.core.atomic_files import atomic_file, atomic_files, create_once, staged_folder
 from mmweaver.core.board import Board
+from mmweaver.core.checksums import SUMS_FILE, damages, read_sums, sums_text, write_sums
 from mmweaver.core.errors import InputError
 from mmweaver.core.optional_packages import need
-from mmweaver.core.output_checks import resolved
+from mmweaver.core.output_checks import cannot_write, is_empty, resolved
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.staging import sweep
+from mmweaver.core.records import CubeGrid
+from mmweaver.core.safe_files.regular_files import MEGABYTE, read_bytes
+from mmweaver.core.safe_files.safe_text import parse_json, read_json
+from mmweaver.core.skeleton import JOINT_NAMES
+from mmweaver.core.staging import is_staged, remove, staging_path, sweep, sync, sync_tree
 from mmweaver.datasets.data_card import write_rooms_card
-from mmweaver.datasets.dataset_plan import DatasetPlan, RoomSpec
-from mmweaver.datasets.dataset_store import is_done
-from mmweaver.datasets.dataset_writer import AXES, consolidate_rooms, open_dataset, remove_damaged, write_room
+from mmweaver.datasets.dataset_plan import ACTIVITIES, RADAR_FILE, DatasetPlan, RoomSpec
+from mmweaver.datasets.dataset_store import PLAN_FILE, is_done
+from mmweaver.datasets.geometry_store import write_geometry
+from mmweaver.datasets.room_generation import GeneratedRoom
+from mmweaver.datasets.zarr_arrays import packed_iq, put_array, put_photo, put_texts, write_iq, zarr_module
+
+LARGEST_ROOT_FILE = 64 * MEGABYTE
+# dimensions and coordinates share their names, so that rooms inherit those of the root in xarray.open_datatree
+COORDINATES = {"frame_time": "frame_time_s", "range": "range_m", "radial_velocity": "radial_velocity_mps"}
+AXES = (*COORDINATES, "antenna_position_m")
+ROOT_NAMES = (PLAN_FILE, RADAR_FILE, "zarr.json", *AXES, SUMS_FILE)
+
+
+def open_dataset(folder: Path, plan: DatasetPlan, config: RadarConfig) -> None:
+    """Creates the folder of a data set, or completes an existing one with the same plan and radar.
+
+    Args:
+        folder: The data set.
+        plan: Its plan.
+        config: Its radar.
+
+    Raises:
+        InputError: If the folder contains something else, or a data set with another plan or radar.
+    """
+    target = resolved(folder)
+    text = plan.to_json()
+    if not (target / PLAN_FILE).is_file() and not _can_begin(target):
+        raise InputError(f"{folder} is not empty and holds no data set; choose another folder")
+    if create_once(target / PLAN_FILE, text) != text:
+        raise InputError(f"{folder} holds a data set of another plan; choose another folder or the same settings")
+    stage = staging_path(target / "axes")
+    try:
+        _write_root(stage, plan, config)
+        if read_sums(target) is None:
+            _move_entries(stage, target)
+        elif not (target / RADAR_FILE).is_file():
+            raise InputError(f"{target / RADAR_FILE} is missing; make it anew with the same command and --repair")
+        elif _read(target / RADAR_FILE) != _read(stage / RADAR_FILE):
+            raise InputError(f"{folder} holds a data set of another radar; choose another folder or the same radar")
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+    finally:
+        remove(stage)
+
+
+def _can_begin(target: Path) -> bool:
+    """Whether a folder is new or empty, or was left by a kill before its plan was written."""
+    if not target.exists() or is_empty(target):
+        return True
+    others = {entry.name for entry in target.iterdir() if not is_staged(entry.name)}
+    return others <= {*ROOT_NAMES, f".{PLAN_FILE}"}
+
+
+def _write_root(stage: Path, plan: DatasetPlan, config: RadarConfig) -> None:
+    root = zarr_module().open_group(stage, mode="w")
+    grid = CubeGrid.of(config, plan.num_frames)
+    for name, of_grid in COORDINATES.items():
+        put_array(root, name, getattr(grid, of_grid), (name,))
+    put_array(root, "antenna_position_m", grid.antenna_position_m, ("antenna", "axis"))
+    root.attrs.update(
+        {
+            "made_by": "mmweaver dataset",
+            "radar": parse_json(config.to_json(), "the radar"),
+            "joints": list(JOINT_NAMES),
+            "wavelength_m": config.wavelength_m,
+            "checksums": SUMS_FILE,
+        }
+    )
+    (stage / PLAN_FILE).write_text(plan.to_json(), encoding="utf-8")
+    (stage / RADAR_FILE).write_text(config.to_json(), encoding="utf-8")
+    write_sums(stage)
+
+
+def _move_entries(stage: Path, target: Path) -> None:
+    """Moves entries that are missing or differ, checksums last; other processes may do the same concurrently."""
+    sync_tree(stage)
+    for name in ROOT_NAMES:
+        if _contents(stage / name) == _contents(target / name):
+            continue
+        if (target / name).is_dir():
+            remove(target / name)
+        try:
+            (stage / name).rename(target / name)
+        except OSError:
+            if not (target / name).is_dir():  # else another process was quicker
+                raise
+    remove(target / f".{PLAN_FILE}")
+    sync(target)
+
+
+def _contents(place: Path) -> dict[str, bytes]:
+    files = [place] if place.is_file() else sorted(file for file in place.rglob("*") if file.is_file())
+    return {file.relative_to(place).as_posix(): _read(file) for file in files}
+
+
+def _read(file: Path) -> bytes:
+    return read_bytes(file, max_bytes=LARGEST_ROOT_FILE)
+
+
+def remove_damaged(folder: Path, plan: DatasetPlan) -> list[str]:
+    """Removes damaged rooms and a damaged root of a data set, so that they are generated again.
+
+    Args:
+        folder: The data set.
+        plan: Its plan.
+
+    Returns:
+        Names of the removed rooms.
+
+    Raises:
+        InputError: If the folder contains a data set with another plan.
+    """
+    if not (folder / PLAN_FILE).is_file() and not (folder / SUMS_FILE).is_file():
+        return []
+    text = plan.to_json()
+    sums = _sums_or_none(folder)
+    if sums is None or damages(folder):
+        is_ours = (sums or {}).get(PLAN_FILE) == hashlib.sha256(text.encode()).hexdigest()
+        if not is_ours and _read(folder / PLAN_FILE) != text.encode():
+            raise InputError(f"{folder} holds a data set of another plan; give the settings it was made with")
+        remove(folder / SUMS_FILE)
+        with atomic_file(folder / PLAN_FILE) as temporary:
+            temporary.write_text(text, encoding="utf-8")
+    rooms = [room.name for room in plan.rooms() if is_done(folder, room.name)]
+    damaged = [name for name in rooms if _is_damaged(folder / name)]
+    for name in damaged:
+        away = staging_path(folder / name)
+        (folder / name).rename(away)
+        remove(away)
+    return damaged
+
+
+def _sums_or_none(folder: Path) -> dict[str, str] | None:
+    try:
+        return read_sums(folder)
+    except InputError:
+        return None
+
+
+def _is_damaged(room: Path) -> bool:
+    return _sums_or_none(room) is None or bool(damages(room))
+
+
+def write_room(folder: Path, generated: GeneratedRoom) -> None:
+    """Writes one room atomically; an existing room is kept, since equal plans give identical data.
+
+    Args:
+        folder: The data set.
+        generated: The room.
+    """
+    with staged_folder(resolved(folder) / generated.spec.name, keep_existing=True) as partial:
+        group = zarr_module().open_group(partial, mode="w")
+        _put_sequences(group, generated)
+        put_photo(group, generated.photo)
+        _put_clutter(group, generated.static)
+        group.attrs.update(_attributes(generated))
+
+
+def _put_sequences(group: Any, generated: GeneratedRoom) -> None:
+    sequences = generated.sequences
+    if packed := [packed_iq(s.cube) for s in sequences if s.cube is not None]:
+        write_iq(group, "float16", (len(packed), *packed[0][0].shape), (pairs for pairs, _ in packed))
+        put_array(group, "iq_scale", np.array([scale for _, scale in packed]), ("sequence",))
+    if generated.geometry is not None:
+        write_geometry(group, generated.geometry, [s.trace for s in sequences if s.trace is not None])
+    if sequences:
+        pose = ("sequence", "frame_time", "joint", "axis")
+        put_array(group, "joints_m", np.stack([s.joints_m for s in sequences]), pose)
+        put_array(group, "joint_velocity_mps", np.stack([s.joint_velocity_mps for s in sequences]), pose)
+        put_array(group, "subject", np.array([s.spec.person for s in sequences], np.int32), ("sequence",))
+        put_array(group, "seed", np.array([s.spec.seed for s in sequences]), ("sequence",))
+        labels = np.array([list(ACTIVITIES).index(s.spec.activity) for s in sequences], np.int32)
+        put_array(group, "label", labels, ("sequence",))
+        put_texts(group, "label_name", [s.spec.activity for s in sequences])
+        put_texts(group, "text", [s.spec.text for s in sequences])
+        put_texts(group, "split", [s.spec.split for s in sequences])
+
+
+def _put_clutter(group: Any, static: np.ndarray) -> None:
+    put_array(group, "empty_iq", np.stack([np.real(static), np.imag(static)], -1), ("range", "antenna", "part"))
+
+
+def _attributes(generated: GeneratedRoom) -> dict[str, Any]:
+    spec, sequences = generated.spec, generated.sequences
+    return {
+        "kind": spec.kind,
+        "layout": spec.layout,
+        "lighting": spec.lighting,
+        "checksums": SUMS_FILE,
+        "activity": [s.spec.activity for s in sequences],
+        "text": [s.spec.text for s in sequences],
+        "split": [s.spec.split for s in sequences],
+        "index": [s.spec.index for s in sequences],
+        "refused": [list(entry) for entry in generated.refused],
+    }
+
+
+METADATA = "zarr.json"
+KEY = "consolidated_metadata"
+
+
+def consolidate_rooms(folder: Path, rooms: Sequence[str], axes: Sequence[str]) -> None:
+    """Completes the consolidated metadata in the root's zarr.json, and its checksum.
+
+    Args:
+        folder: The data set.
+        rooms: Names of the rooms.
+        axes: Names of the arrays in the root.
+
+    Raises:
+        InputError: If metadata is damaged.
+    """
+    root = read_json(folder / METADATA)
+    files = [file for name in (*axes, *sorted(rooms)) for file in sorted((folder / name).rglob(METADATA))]
+    members: dict[str, Any] = {file.parent.relative_to(folder).as_posix(): read_json(file) for file in files}
+    gathered = {"kind": "inline", "must_understand": False, "metadata": members}
+    text = json.dumps(root | {KEY: gathered})
+    held = read_sums(folder) or {}
+    sums = held | {METADATA: hashlib.sha256(text.encode()).hexdigest()}
+    if root.get(KEY) == gathered and sums == held:  # a kill may have occurred between the two files
+        return
+    with atomic_files(folder / METADATA, folder / SUMS_FILE) as (metadata, listed):
+        metadata.write_text(text, encoding="utf-8")
+        listed.write_text(sums_text(sums), encoding="utf-8")
 
 
 @dataclass(frozen=True, kw_only=True)

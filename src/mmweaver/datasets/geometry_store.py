@@ -25,11 +25,10 @@ from mmweaver.datasets.room_generation import RoomGeometry
 from mmweaver.datasets.zarr_arrays import put_array
 from mmweaver.propagation.body_model import DEFAULT_NUM_POINTS, ScatteringBody
 from mmweaver.propagation.body_paths import GHOST_POINTS, ghost_points
-from mmweaver.propagation.frame_clock import FrameClock
-from mmweaver.propagation.paths import STATIC_KINDS, Interaction
+from mmweaver.propagation.occlusion import Visibility
+from mmweaver.propagation.paths import STATIC_KINDS, FrameClock, Interaction
 from mmweaver.propagation.static_paths import AS_PUBLISHED, PreparedRoom, Propagation
 from mmweaver.propagation.static_paths_store import room_arrays, room_of, room_words
-from mmweaver.propagation.visibility import Visibility
 
 GEOMETRY = "geometry"
 ROOMS = ("room", "photographed")

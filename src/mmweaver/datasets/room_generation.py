@@ -10,14 +10,14 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, RgbdPhoto, Scene
 from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M, RoomSpec, SequenceSpec
-from mmweaver.motion.animation.resample import joints_and_velocities
+from mmweaver.motion.animation.root_path import joints_and_velocities
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.people import Person
 from mmweaver.propagation.diffuse_clutter import seed_of_room
+from mmweaver.propagation.occlusion import Visibility
 from mmweaver.propagation.ray_traced import Simulator
 from mmweaver.propagation.static_paths import ALL_PATHS, FIRST_ORDER, PreparedRoom, Propagation, RayTracedRoom
-from mmweaver.propagation.visibility import Visibility
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.signal.cube import radar_cube

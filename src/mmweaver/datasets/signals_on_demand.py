@@ -20,19 +20,19 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.board import Board
-from mmweaver.core.default_precision import single_precision
+from mmweaver.core.constants import __version__
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import RadarPose
 from mmweaver.core.records import PoseSequence, RadarCube, RgbdPhoto, Scene
 from mmweaver.core.safe_files.safe_zarr import ZarrFolder, open_zarr
+from mmweaver.core.seeding import single_precision
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.core.stages import Stages
-from mmweaver.core.version import __version__
 from mmweaver.datasets.checked_folder import CheckedFolder, stored_sequence
 from mmweaver.datasets.zarr_arrays import put_array, put_photo, put_sequences, stored_photo
 from mmweaver.models.methods import METHODS, Method
-from mmweaver.scene.photo.posed_photo import PosedPhoto
+from mmweaver.scene.photo.capture_photo import PosedPhoto
 from mmweaver.scene.reconstruction import reconstruct
 
 GEOMETRY = "geometry"

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mmweaver.evaluation.measured_feature import FrameValues, feature
+from mmweaver.evaluation.finding import FrameValues, feature
 from mmweaver.evaluation.signal_evidence import CannotSeeError, SignalEvidence, decibels
 from mmweaver.signal.windows import hann, noise_share
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from mmweaver.core.records import PointCloud
 from mmweaver.core.virtual_array import has_elevation
-from mmweaver.evaluation.measured_feature import FrameValues, Measure, feature
+from mmweaver.evaluation.finding import FrameValues, Measure, feature
 from mmweaver.evaluation.signal_evidence import CannotSeeError, SignalEvidence
 
 MOVING_MPS = 0.1

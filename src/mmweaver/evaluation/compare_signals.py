@@ -14,17 +14,15 @@ from typing import Any
 
 import numpy as np
 
+from mmweaver.core.constants import __version__
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud
-from mmweaver.core.version import __version__
 
 # imported to register their features
 from mmweaver.evaluation import board_features, cloud_features, person_features, room_features  # noqa: F401
-from mmweaver.evaluation.common_axes import CommonAxes, common_axes, common_window_m, maps_of, shown_m
-from mmweaver.evaluation.compared_sides import signals_of
-from mmweaver.evaluation.effect_size import Difference, Spread, difference_of, spread_of
-from mmweaver.evaluation.measured_feature import FEATURES, Feature, FrameValues
+from mmweaver.evaluation.compared_sides import CommonAxes, common_axes, common_window_m, maps_of, shown_m, signals_of
+from mmweaver.evaluation.finding import FEATURES, Difference, Feature, FrameValues, Spread, difference_of, spread_of
 from mmweaver.evaluation.signal_evidence import MIN_UNITS, CannotSeeError, ComparedSignal, SignalEvidence
 from mmweaver.io.result_folder import plain
 from mmweaver.recordings.read_recording import RawReading

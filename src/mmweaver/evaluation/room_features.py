@@ -3,7 +3,7 @@
 import numpy as np
 
 from mmweaver.core.virtual_array import azimuth_row
-from mmweaver.evaluation.measured_feature import FrameValues, feature
+from mmweaver.evaluation.finding import FrameValues, feature
 from mmweaver.evaluation.signal_evidence import CannotSeeError, SignalEvidence, decibels
 from mmweaver.signal.plane_waves import best_wave_share, plane_waves
 from mmweaver.signal.spectra import azimuth_axis_rad, range_azimuth_power

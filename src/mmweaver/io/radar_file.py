@@ -4,15 +4,14 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 
+from mmweaver.core.boards import PRESETS
 from mmweaver.core.errors import InputError, file_named
 from mmweaver.core.firmware_settings import FIRMWARE, FirmwareSettings
-from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.core.virtual_array import azimuth_resolution_rad, has_elevation
-from mmweaver.io.mmwave_studio import is_mmwave_studio, read_mmwave_studio
+from mmweaver.io.mmwave_studio import is_mmwave_studio, read_mmwave_studio, read_studio_script
 from mmweaver.io.radar_options import RadarOptions, split_radar
-from mmweaver.io.studio_script import read_studio_script
 from mmweaver.io.ti_cfg import cfg_path, read_ti_cfg
 from mmweaver.io.ti_firmware import read_ti_firmware
 

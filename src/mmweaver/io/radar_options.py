@@ -4,11 +4,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from mmweaver.core.antenna_tables import AntennaTable, antenna_table
+from mmweaver.core.boards import ANTENNAS, halfwave_positions
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import ANTENNAS, halfwave_positions
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_text import read_json
+from mmweaver.core.virtual_array import AntennaTable, antenna_table
 
 EXAMPLE = '{"tx": [[0, 0], [4, 0]], "rx": [[0, 0], [1, 0], [2, 0], [3, 0]]}'
 

@@ -8,7 +8,7 @@ visualizer writes 1 0 -1 0 for the AOP), unless antPhaseRot does. Reference: mmW
 
 import numpy as np
 
-from mmweaver.core.channel_calibration import ChannelCalibration
+from mmweaver.core.board import ChannelCalibration
 from mmweaver.core.errors import InputError
 from mmweaver.io.radar_options import split_radar
 from mmweaver.io.ti_cfg import cfg_path, setup_of_lines, ti_cfg_lines

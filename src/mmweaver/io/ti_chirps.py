@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from mmweaver.core.antenna_tables import AntennaTable
+from mmweaver.core.boards import ANTENNAS, BAND_60_HZ, BAND_77_HZ, halfwave_positions
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import ANTENNAS, BAND_60_HZ, BAND_77_HZ, halfwave_positions
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.range_window import default_range_bins
 from mmweaver.core.transmit_code import tx_code_of
+from mmweaver.core.virtual_array import AntennaTable
 from mmweaver.io.radar_options import RadarOptions
 
 MAX_TX = 4

@@ -17,7 +17,7 @@ from torch import Tensor, nn
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.models.log_maps import NUM_ANGLE_MAPS, LogMaps
+from mmweaver.models.frame_motion import NUM_ANGLE_MAPS, LogMaps
 from mmweaver.models.weights import load_into, read_card
 
 ACTIVITY_NAMES = (

@@ -11,7 +11,7 @@ from torch import Tensor
 
 from mmweaver.core.pinhole import pixel_coordinates
 from mmweaver.core.skeleton import NUM_JOINTS, PARENTS, joint
-from mmweaver.core.tensor_record import TensorRecord
+from mmweaver.core.tensor_files import TensorRecord
 from mmweaver.models.precision import full_precision
 from mmweaver.models.scene_tensors import NUM_PLANES, SceneTensors
 from mmweaver.propagation.image_method import mirrored

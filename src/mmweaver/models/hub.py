@@ -7,8 +7,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.hub_log import hub_log_off
-from mmweaver.core.optional_packages import need
+from mmweaver.core.optional_packages import hub_log_off, need
 from mmweaver.models.weights import WEIGHTS_FILE, read_card
 
 HUB_NAME = re.compile(r"[A-Za-z0-9][\w.-]*/[A-Za-z0-9][\w.-]*")

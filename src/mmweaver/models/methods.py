@@ -23,8 +23,8 @@ from mmweaver.signal.cube import radar_cube
 
 if TYPE_CHECKING:
     from mmweaver.models.neural_path_solver import LearnedRoom, ScattererNetwork
-    from mmweaver.models.room_inputs import GivenRoom
-    from mmweaver.propagation.background import BackgroundRecording
+    from mmweaver.models.scene_tensors import GivenRoom
+    from mmweaver.propagation.receiver import BackgroundRecording
 
 
 # entries of meta.json
@@ -234,7 +234,7 @@ class Learned:
 
 
 def _given_room(scene: Scene, config: RadarConfig, propagation: Propagation) -> "GivenRoom":
-    from mmweaver.models.room_inputs import GivenRoom
+    from mmweaver.models.scene_tensors import GivenRoom
 
     return GivenRoom.of(scene, config, propagation=propagation)
 

@@ -1,8 +1,17 @@
-"""The network as a path solver: from room and motion to paths and their signal. Implements `method="weaver"`."""
+"""The network as a path solver: from room and motion to paths and their signal. Implements `method="weaver"`.
+
+Second-order paths in addition to those of the network: over people and rough surfaces, and over two people.
+
+The network has learned first-order paths. These follow by physics from joints and room, as in `propagation`, with
+fewer skin points, which the room and other people may occlude, but not the body itself.
+Reference: docs/decisions/network-by-default.md.
+"""
 
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import lru_cache
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -10,7 +19,7 @@ import torch
 from scipy import fft
 from torch import Tensor
 
-from mmweaver.compression.scatterers.cell_noise import cell_noise
+from mmweaver.compression.scatterers.layers import cell_noise
 from mmweaver.core.board import Board
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube, Scene
@@ -18,20 +27,18 @@ from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
 from mmweaver.models.body_anchors import MIRRORED, NUM_ANCHORS, NUM_GHOSTS, facing
 from mmweaver.models.frame_motion import FrameMotion
-from mmweaver.models.learned_second_order import second_order_paths
-from mmweaver.models.room_inputs import GivenRoom
 from mmweaver.models.scatterer_network import ScattererNetwork
-from mmweaver.models.scene_tensors import SceneTensors
+from mmweaver.models.scene_tensors import GivenRoom, SceneTensors
 from mmweaver.propagation.adc_synthesis import AdcSynthesis, one_thread
-from mmweaver.propagation.background import BackgroundRecording, check_recording
 from mmweaver.propagation.board_effects import BoardEffects
+from mmweaver.propagation.body_model import ScatteringBody
 from mmweaver.propagation.cube_rendering import CubeRenderer
-from mmweaver.propagation.image_sources import static_points
-from mmweaver.propagation.mean_power import MeanPower
-from mmweaver.propagation.mean_scatterers import MeanEchoes
+from mmweaver.propagation.image_method import static_points
+from mmweaver.propagation.mean_power import MeanEchoes, MeanPower
 from mmweaver.propagation.occlusion import occluded
-from mmweaver.propagation.paths import Paths, ScenePaths, StaticPaths
-from mmweaver.propagation.receiver import quantise
+from mmweaver.propagation.paths import FrameClock, Paths, ScenePaths, StaticPaths
+from mmweaver.propagation.receiver import BackgroundRecording, check_recording, quantise
+from mmweaver.propagation.second_order import ROOM_MARGIN_M, BodyBodyPaths, BodyRoomPaths, PairSampling
 from mmweaver.propagation.speckle import (
     place_of,
     sample_moving,
@@ -39,8 +46,56 @@ from mmweaver.propagation.speckle import (
     sample_static,
     strongest_first,
 )
+from mmweaver.propagation.static_paths import RayTracedRoom
+from mmweaver.propagation.visible_body import BodyAtFrames, VisibleBody
 from mmweaver.signal.cube import adc_from_cube, cube_values, static_samples, tdm_compensation
 from mmweaver.signal.windows import doppler_window_middle
+
+SKIN_POINTS = 200
+SAMPLING = PairSampling(most_pairs=16, most_patches=100, every=5)  # parts of a stream begin at multiples of 5 frames
+
+
+def second_order_paths(room: RayTracedRoom, motions: Sequence[FrameMotion], clock: FrameClock) -> Paths:
+    """Second-order paths of all people.
+
+    Args:
+        room: The traced room.
+        motions: Motion of each person.
+        clock: Clock of the radar's frame.
+
+    Returns:
+        Paths (frame * segment, path).
+    """
+    seen = [_seen(room, motion, [one for one in motions if one is not motion], clock) for motion in motions]
+    people = [BodyRoomPaths(one, SAMPLING) for one in seen]
+    between = [BodyBodyPaths(*pair) for pair in combinations(people, 2)]
+    count, every = seen[0].num_frames, SAMPLING.every
+    blocks = [slice(first, min(first + every, count)) for first in range(0, count, every)]
+    sources = (
+        [one.room_paths for one in people] + [pair.paths for pair in between] + [one.radar_paths for one in people]
+    )
+    each = [Paths.padded([source(block) for block in blocks]) for source in sources]
+    return Paths.cat(each, dim=1)
+
+
+def _seen(room: RayTracedRoom, motion: FrameMotion, others: list[FrameMotion], clock: FrameClock) -> VisibleBody:
+    body = _body(motion.subject, motion.height_m, motion.girth)
+    one = VisibleBody(room, body, BodyAtFrames.of(body, clock, motion.node_joints_m(clock), None, []))
+    clear = room.is_clear(np.zeros(3), one.posed.place_m[:: SAMPLING.every], ROOM_MARGIN_M)
+    one.visible &= np.repeat(clear, SAMPLING.every, axis=0)[: one.num_frames]
+    for other in others:
+        one.visible &= ~occluded(_tensor(one.posed.place_m), other.middle_joints_m).numpy()
+    return one
+
+
+@lru_cache(maxsize=32)
+def _body(subject: int, height_m: float, girth: float) -> ScatteringBody:
+    return ScatteringBody(subject, height_m, SKIN_POINTS, girth=girth)
+
+
+def _tensor(values: np.ndarray) -> Tensor:
+    return torch.from_numpy(values).float()
+
 
 NOTICED = 4e-3  # amplitude relative to the strongest static path; occlusion of fainter ones is negligible
 ADC_FRAMES_AT_ONCE = 20

@@ -1,4 +1,7 @@
-"""A room as input of the networks: a small picture, the static paths of what it shows, and the flat faces."""
+"""A room as input of the networks: a small picture, the static paths of what it shows, and the flat faces.
+
+Inputs of the network and of second-order paths: a photographed room, traced once for one radar.
+"""
 
 import math
 from dataclasses import dataclass
@@ -10,12 +13,13 @@ from torch import Tensor
 from mmweaver.core.pinhole import resized
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import ClassMask, Plane, Scene
-from mmweaver.core.tensor_record import TensorRecord
+from mmweaver.core.tensor_files import TensorRecord
 from mmweaver.propagation.antenna import scatterer_gain
-from mmweaver.propagation.image_method import SpecularReflector
-from mmweaver.propagation.image_sources import apparent_direction
+from mmweaver.propagation.diffuse_clutter import diffuse_clutter, seed_of_room
+from mmweaver.propagation.image_method import SpecularReflector, apparent_direction
+from mmweaver.propagation.paths import Interaction, StaticPaths
 from mmweaver.propagation.radar_equation import direction_loss_db
-from mmweaver.propagation.static_paths import FIRST_ORDER, PreparedRoom, RayTracedRoom
+from mmweaver.propagation.static_paths import ALL_PATHS, FIRST_ORDER, PreparedRoom, Propagation, RayTracedRoom
 from mmweaver.scene.photo.depth_grid import DepthGrid, make_grid
 
 IMAGE_ROWS, IMAGE_COLUMNS = 120, 160
@@ -167,3 +171,30 @@ def _plane_features(plane: Plane) -> np.ndarray:
 
 def _tensor(values: np.ndarray) -> Tensor:
     return torch.from_numpy(np.ascontiguousarray(values, dtype=np.float32))
+
+
+@dataclass(frozen=True, kw_only=True)
+class GivenRoom:
+    """The network corrects the first-order paths in `view`; all other paths are those of physics."""
+
+    view: SceneTensors
+    traced: RayTracedRoom
+    others: StaticPaths  # of second order, and clutter
+
+    @classmethod
+    def of(
+        cls, scene: Scene, config: RadarConfig, *, seed: int = 0, propagation: Propagation = ALL_PATHS
+    ) -> "GivenRoom":
+        """Traces a scene.
+
+        Args:
+            scene: The room.
+            config: The radar.
+            seed: Seed of phases and clutter.
+            propagation: Which paths are traced.
+        """
+        traced = RayTracedRoom(scene, config, seed, propagation)
+        others = [traced.paths.select(Interaction.ROOM_ROOM)]
+        if propagation.clutter:
+            others.append(diffuse_clutter(config, seed_of_room(scene) + seed))
+        return cls(view=SceneTensors.of(scene, config, traced), traced=traced, others=StaticPaths.cat(others))

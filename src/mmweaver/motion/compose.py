@@ -6,11 +6,10 @@ from typing import Any
 
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.motion.animation.assemble import assembled_controls, solved
-from mmweaver.motion.animation.controls import Controls
-from mmweaver.motion.animation.habits import NO_HABITS, habits_of
+from mmweaver.motion.animation.controls import NO_HABITS, Controls, habits_of
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.plan import APPROXIMATED, ClauseRecord, MotionPlan, Shape, Step
-from mmweaver.motion.language.step_names import add_shown_text, in_turn
+from mmweaver.motion.language.postures import add_shown_text, in_turn
 from mmweaver.motion.people import Person, apply_habits, person_of, subject_of
 from mmweaver.motion.planning.body_state import BodyState
 from mmweaver.motion.planning.collision import CollisionMap, PulledChair

@@ -19,7 +19,7 @@ from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.compose import Motion, compose
 from mmweaver.motion.language.plan import MotionPlan, Step
 from mmweaver.motion.language.plan_resumption import HELD_FIRST_S, continued, goes_on, posture_held
-from mmweaver.motion.language.sentence_parser import parse_sentence
+from mmweaver.motion.language.sentence import parse_sentence
 from mmweaver.motion.language.timing import natural_s, schedule
 from mmweaver.motion.people import Person, apply_habits, person_of, subject_of
 from mmweaver.motion.planning.body_state import BodyState

@@ -17,10 +17,9 @@ from torch import Tensor
 
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.tensor_record import TensorRecord
+from mmweaver.core.tensor_files import TensorRecord
 from mmweaver.propagation.fast_time import FastTime, phasor
-from mmweaver.propagation.frame_clock import NUM_NODES, FrameClock, Segment
-from mmweaver.propagation.paths import Paths, ScenePaths, StaticPaths
+from mmweaver.propagation.paths import NUM_NODES, FrameClock, Paths, ScenePaths, Segment, StaticPaths
 from mmweaver.propagation.transmit_elements import TransmitElements
 
 if TYPE_CHECKING:

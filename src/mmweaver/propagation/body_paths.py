@@ -8,12 +8,11 @@ import torch
 
 from mmweaver.core.ray_caster import RayCaster
 from mmweaver.propagation.body_model import ScatteringBody
-from mmweaver.propagation.frame_clock import FrameClock
 from mmweaver.propagation.image_method import SpecularReflector, fresnel_radius_m
-from mmweaver.propagation.paths import Interaction, Paths, StaticPaths
+from mmweaver.propagation.occlusion import Visibility
+from mmweaver.propagation.paths import FrameClock, Interaction, Paths, StaticPaths
 from mmweaver.propagation.second_order import BodyRoomPaths
 from mmweaver.propagation.static_paths import PreparedRoom
-from mmweaver.propagation.visibility import Visibility
 from mmweaver.propagation.visible_body import BodyAtFrames, VisibleBody, occluded_by
 
 GHOST_POINTS = 200

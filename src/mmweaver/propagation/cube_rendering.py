@@ -15,15 +15,13 @@ from torch import Tensor
 
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.tensor_record import TensorRecord
+from mmweaver.core.tensor_files import TensorRecord
 from mmweaver.propagation.adc_synthesis import ArrayPhases, unpadded
 from mmweaver.propagation.fast_time import phasor
-from mmweaver.propagation.frame_clock import FadedSegment, FrameClock
-from mmweaver.propagation.paths import Paths, StaticPaths
+from mmweaver.propagation.paths import FadedSegment, FrameClock, Paths, StaticPaths
 from mmweaver.propagation.transmit_elements import TransmitElements
 from mmweaver.signal.cube import doppler_weight, slot_compensation, tdm_compensation
-from mmweaver.signal.window_kernels import WindowKernel
-from mmweaver.signal.windows import hann
+from mmweaver.signal.windows import WindowKernel, hann
 
 if TYPE_CHECKING:
     from mmweaver.propagation.board_effects import BoardEffects

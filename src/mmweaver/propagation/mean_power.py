@@ -1,6 +1,8 @@
 """Mean power maps of echoes of unknown phase: the predictable part of a radar signal.
 
 Echoes of independent phase add in power. Reference: speckle statistics (Goodman).
+
+Output of the networks: mean echoes, independent of the radar, before phases are sampled (`speckle`).
 """
 
 import math
@@ -10,11 +12,21 @@ import torch
 from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.tensor_record import TensorRecord
+from mmweaver.core.tensor_files import TensorRecord
 from mmweaver.core.virtual_array import azimuth_row, elevation_columns
 from mmweaver.signal.point_response import Axes, PointResponse, Points
 from mmweaver.signal.spectra import azimuth_axis_rad, elevation_axis_rad
 from mmweaver.signal.windows import noise_share
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeanEchoes(TensorRecord):
+    """Echoes of scatterers, averaged over their unknown phases."""
+
+    range_m: Tensor  # (..., echo)
+    velocity_mps: Tensor  # (..., echo) radial, positive away from the radar
+    direction: Tensor  # (..., echo, 2) direction cosines along x and z
+    cross_section_m2: Tensor  # (..., echo) mean
 
 
 @dataclass(frozen=True, kw_only=True)

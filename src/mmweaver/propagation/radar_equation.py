@@ -7,7 +7,7 @@ from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.propagation.antenna import pattern_db, scatterer_gain
-from mmweaver.propagation.mean_scatterers import MeanEchoes
+from mmweaver.propagation.mean_power import MeanEchoes
 from mmweaver.signal.point_response import PointResponse, Points
 
 

@@ -1,7 +1,13 @@
-"""The ray tracer: scene and poses to paths and ADC samples. The room is traced once, people frame by frame."""
+"""The ray tracer: scene and poses to paths and ADC samples. The room is traced once, people frame by frame.
+
+Several people: each occludes the others, their multipath and the room as a body occludes itself.
+
+Paths over two people are of second order, see `second_order` and docs/several_people.md.
+"""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -15,22 +21,90 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PoseSequence, RadarCube, Scene
 from mmweaver.motion.micro_motion import MicroMotion, MicroMotionSettings
 from mmweaver.propagation.adc_synthesis import AdcSynthesis, one_thread
-from mmweaver.propagation.background import BackgroundRecording, check_recording
 from mmweaver.propagation.board_effects import BoardEffects
 from mmweaver.propagation.body_model import DEFAULT_NUM_POINTS, ScatteringBody, body_of
 from mmweaver.propagation.body_paths import BodyPaths
 from mmweaver.propagation.cube_rendering import CubeRenderer
 from mmweaver.propagation.diffuse_clutter import diffuse_clutter
-from mmweaver.propagation.frame_clock import FrameClock
-from mmweaver.propagation.image_sources import static_points
+from mmweaver.propagation.image_method import static_points
 from mmweaver.propagation.mean_power import MeanPower
-from mmweaver.propagation.multi_person_paths import PeoplePaths
-from mmweaver.propagation.paths import Interaction, ScenePaths, StaticPaths
-from mmweaver.propagation.receiver import LEAKAGE_PATH_LENGTH_M, Impairments, Receiver, leakage
+from mmweaver.propagation.occlusion import Visibility
+from mmweaver.propagation.paths import FrameClock, Interaction, Paths, ScenePaths, StaticPaths
+from mmweaver.propagation.receiver import (
+    LEAKAGE_PATH_LENGTH_M,
+    BackgroundRecording,
+    Impairments,
+    Receiver,
+    check_recording,
+    leakage,
+)
+from mmweaver.propagation.second_order import BodyBodyPaths
 from mmweaver.propagation.skin_scattering import SkinEcho
 from mmweaver.propagation.static_paths import Propagation, RayTracedRoom
-from mmweaver.propagation.visibility import Visibility
+from mmweaver.propagation.visible_body import hulls_of, occluded_by
 from mmweaver.signal.cube import static_samples
+
+
+class PeoplePaths:
+    """Paths of all people in one room, frame by frame; an empty room without people.
+
+    A static path that two of them occlude is removed once.
+    """
+
+    def __init__(
+        self,
+        room: RayTracedRoom,
+        bodies: list[ScatteringBody],
+        clock: FrameClock,
+        joints_m: list[np.ndarray],
+        chests_m: list[np.ndarray] | None = None,
+    ):
+        """Poses all people, and determines which paths are clear.
+
+        Args:
+            room: The room.
+            bodies: Skin points of each person; may be empty.
+            clock: Clock of the radar's frame.
+            joints_m: Joints (frame, node, 22, 3) in metres of each person, at the clock's nodes.
+            chests_m: Outward displacement of the chest (frame, node) in metres of each person; by default none.
+        """
+        self.room, self.num_segments = room, len(clock.segments)
+        self.hulls = hulls_of(bodies, joints_m) if bodies else []
+        self.each = [
+            BodyPaths(room, body, clock, own, chest, self.hulls)
+            for body, own, chest in zip(bodies, joints_m, chests_m or [None] * len(bodies), strict=True)
+        ]
+        seconds = [one.second for one in self.each if one.second is not None]
+        self.between = [BodyBodyPaths(*pair) for pair in combinations(seconds, 2)]
+
+    def scene(self, num_frames: int) -> ScenePaths:
+        """All paths of the room and of the people.
+
+        Args:
+            num_frames: Number of frames, from the first.
+        """
+        segments = [paths for frame in range(num_frames) for paths in self.paths(frame)]
+        occluded = np.stack([self.occluded(frame) for frame in range(num_frames)])
+        return ScenePaths(
+            static=self.room.paths, moving=Paths.padded(segments), occluded=torch.from_numpy(occluded.astype(np.uint8))
+        )
+
+    def paths(self, frame: int) -> list[Paths]:
+        """All paths over people in one frame, one record (path,) per time segment."""
+        each = [one.paths(frame) for one in self.each]
+        for between in self.between:
+            paths = between.paths(slice(frame, frame + 1))
+            each.append([paths[index] for index in range(self.num_segments)])
+        return [Paths.cat(parts) for parts in zip(*each, strict=True)] if each else [Paths.none()] * self.num_segments
+
+    def occluded(self, frame: int) -> np.ndarray:
+        """Mask (path,) of the static paths that any person occludes in one frame."""
+        found = np.zeros(len(self.room.paths), bool)
+        if self.each:
+            near = np.unique(np.concatenate([one.occludable(frame) for one in self.each]))
+            found[occluded_by(self.hulls[frame], self.room.paths, near)] = True
+        return found
+
 
 CHUNK_FRAMES = 20  # frames per chunk, which bounds memory
 

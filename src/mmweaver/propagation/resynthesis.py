@@ -18,12 +18,12 @@ from mmweaver.motion.micro_motion import MicroMotion, MicroMotionSettings
 from mmweaver.propagation.adc_synthesis import AdcSynthesis
 from mmweaver.propagation.body_model import ScatteringBody
 from mmweaver.propagation.body_paths import BodyPaths
+from mmweaver.propagation.occlusion import Visibility
 from mmweaver.propagation.paths import Paths, ScenePaths
 from mmweaver.propagation.ray_traced import add_micro_motion, leakage_path
 from mmweaver.propagation.receiver import Impairments, Receiver
 from mmweaver.propagation.static_paths import PreparedRoom
 from mmweaver.propagation.static_paths_store import resampled_phases
-from mmweaver.propagation.visibility import Visibility
 
 ROOM_REALIZATIONS = 4  # sets of phases per room; each takes 30 ms and is cached
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mmweaver.core.rotations import unit
-from mmweaver.core.tensor_record import TensorRecord
+from mmweaver.core.tensor_files import TensorRecord
 
 VOXEL_M = 0.25  # patches within a voxel of this size are merged
 GRAZING_COS = 0.02  # lower bound of the cosine at which a face is seen

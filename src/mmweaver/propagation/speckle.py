@@ -16,7 +16,7 @@ from torch import Tensor
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
-from mmweaver.propagation.mean_scatterers import MeanEchoes
+from mmweaver.propagation.mean_power import MeanEchoes
 from mmweaver.propagation.paths import ApparentPoint, Interaction, Paths, StaticPaths
 from mmweaver.propagation.radar_equation import carrier, points_of
 from mmweaver.propagation.static_paths import scattered_paths

@@ -13,7 +13,7 @@ from mmweaver.core.records import Scene
 from mmweaver.core.rotations import directions, unit
 from mmweaver.core.seeding import stream
 from mmweaver.core.shapes import Values
-from mmweaver.core.tensor_record import TensorRecord
+from mmweaver.core.tensor_files import TensorRecord
 from mmweaver.propagation.antenna import pattern, scatterer_gain, specular_gain
 from mmweaver.propagation.edge_scattering import find_edges
 from mmweaver.propagation.image_method import SLAB_ECHOES, SpecularReflector, specular_paths, specular_reflectors

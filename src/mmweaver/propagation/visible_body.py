@@ -8,8 +8,7 @@ import numpy as np
 from mmweaver.core.ray_caster import RayCaster
 from mmweaver.propagation.antenna import pattern, scatterer_gain
 from mmweaver.propagation.body_model import ScatteringBody
-from mmweaver.propagation.frame_clock import FrameClock
-from mmweaver.propagation.paths import StaticPaths
+from mmweaver.propagation.paths import FrameClock, StaticPaths
 from mmweaver.propagation.static_paths import PreparedRoom, RayTracedRoom
 
 

@@ -17,7 +17,7 @@ from mmweaver.core.skeleton import joint
 from mmweaver.motion.animation.profiles import rise
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.plan import MotionPlan
-from mmweaver.motion.language.sentence_parser import parse_sentence
+from mmweaver.motion.language.sentence import parse_sentence
 from mmweaver.motion.language.timing import LONGEST_S, is_elastic, natural_s, repeated, schedule
 from mmweaver.motion.people import MOST_SUBJECTS, person_of
 from mmweaver.recognition.random_scene import (

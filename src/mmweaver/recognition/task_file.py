@@ -34,7 +34,7 @@ from mmweaver.core.records import PointCloud
 from mmweaver.core.safe_files.safe_text import read_toml
 from mmweaver.io.radar_file import load_firmware, load_radar
 from mmweaver.io.radar_options import split_radar
-from mmweaver.motion.worded_activities import NOBODY, activities_of
+from mmweaver.motion.register_activity import NOBODY, activities_of
 
 # Known names of each table, with the limits of those that are numbers.
 TABLES: dict[str, dict[str, tuple[float, float] | None]] = {

@@ -12,16 +12,14 @@ from pathlib import Path
 
 import numpy as np
 
-from mmweaver.core.presets import ANTENNAS, PRESETS
+from mmweaver.core.boards import ANTENNAS, PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, RadarCube
 from mmweaver.core.safe_files.regular_files import open_regular
 from mmweaver.core.shapes import PerFrame
 from mmweaver.io.dca1000 import upright
 from mmweaver.io.radar_options import RadarOptions
-from mmweaver.recordings.frame_boundaries import loops_of_other_frames
-from mmweaver.recordings.transmitter_order import agreements
-from mmweaver.recordings.word_order import wrong_iq_order, wrong_lanes
+from mmweaver.recordings.frame_boundaries import agreements, loops_of_other_frames, wrong_iq_order, wrong_lanes
 from mmweaver.signal.cube import remove_static
 from mmweaver.signal.spectra import range_doppler_power
 

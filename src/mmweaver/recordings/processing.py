@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.board import Board, read_board
+from mmweaver.core.constants import __version__
 from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PointCloud, RadarCube
 from mmweaver.core.stages import Stages
-from mmweaver.core.version import __version__
 from mmweaver.io.dca_packets import PacketCapture
 from mmweaver.io.npz_files import write_npz
 from mmweaver.io.radar_file import load_firmware
@@ -24,9 +24,9 @@ from mmweaver.recordings.read_recording import Recording, as_config, read_record
 from mmweaver.scene.photo.capture_photo import photo_folder, photo_times_s
 from mmweaver.signal.cube import remove_static
 from mmweaver.signal.detection import check_points, detect, needs_adc
+from mmweaver.viz.feature_page import draw_micro_doppler, draw_people, draw_slow_time
 from mmweaver.viz.figure_data import FigureData
-from mmweaver.viz.previews import PREVIEWS
-from mmweaver.viz.recording_pages import draw_micro_doppler, draw_people, draw_slow_time
+from mmweaver.viz.preview import PREVIEWS
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -16,8 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.core.board import Board
-from mmweaver.core.channel_calibration import ChannelCalibration
+from mmweaver.core.board import Board, ChannelCalibration
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.range_window import chosen_range

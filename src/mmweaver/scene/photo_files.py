@@ -1,10 +1,23 @@
-"""The files of a room in a folder by their names: photo, depth and camera."""
+"""The files of a room in a folder by their names: photo, depth and camera.
+
+The bundled sample room, rendered by tools/make_sample_room.py.
+"""
 
 from dataclasses import dataclass
 from pathlib import Path
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.records import RgbdPhoto
 from mmweaver.core.safe_files.regular_files import check_exists
+from mmweaver.scene.read_photo import read_photo
+
+SAMPLE_FOLDER = Path(__file__).resolve().parents[1] / "sample"
+
+
+def sample_photo() -> tuple[RgbdPhoto, tuple[str, ...]]:
+    """Reads the photo of the bundled sample room, with the assumptions of `read_photo`."""
+    return read_photo(SAMPLE_FOLDER / "rgb.webp", SAMPLE_FOLDER / "depth.png", SAMPLE_FOLDER / "camera.json")
+
 
 COLOUR, DEPTH, CAMERA = (
     ("rgb.png", "rgb.jpg", "rgb.jpeg", "rgb.webp"),

@@ -11,9 +11,9 @@ from mmweaver.core.records import CameraIntrinsics, ClassMask, RgbdPhoto
 from mmweaver.core.safe_files.safe_pictures import turned_upright
 from mmweaver.core.shapes import DepthPixels, RgbPixels
 from mmweaver.scene.photo.camera_file import d455_intrinsics, intrinsics_for, lens_intrinsics, read_camera_file
+from mmweaver.scene.photo.depth_grid import fill_scattered_holes
 from mmweaver.scene.photo.estimated_depth import EXAMPLE, estimate_depth
 from mmweaver.scene.photo.picture_files import Turned, read_depth, read_rgb
-from mmweaver.scene.photo.sparse_depth import fill_scattered_holes
 from mmweaver.scene.segmentation.builtin_segmenter import segment_builtin
 from mmweaver.scene.segmentation.class_file import read_class_file
 from mmweaver.scene.segmentation.pretrained_segmenter import refined_by_sam, segment

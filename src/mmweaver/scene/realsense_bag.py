@@ -18,7 +18,7 @@ from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
 from mmweaver.core.safe_files.regular_files import check_regular, foreign_errors
 from mmweaver.core.shapes import RgbPixels
 from mmweaver.scene.photo.capture_photo import D455_BASELINE_M, CapturedPhoto, coloured
-from mmweaver.scene.photo.sparse_depth import fill_scattered_holes
+from mmweaver.scene.photo.depth_grid import fill_scattered_holes
 from mmweaver.scene.read_photo import to_common_size
 
 IMAGE, CAMERA = "sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo"

@@ -9,18 +9,16 @@ from jaxtyping import Float
 from mmweaver.core.assumptions import UsualAssumption
 from mmweaver.core.records import Landmark, Plane, RgbdPhoto, Scene
 from mmweaver.core.shapes import Array
-from mmweaver.scene.affordances.free_space import find_assumed_floor
-from mmweaver.scene.affordances.landmarks import find_landmarks
+from mmweaver.scene.affordances.landmarks import find_assumed_floor, find_landmarks
+from mmweaver.scene.layout.doors_and_windows import add_wall_panels, find_wall_panels
 from mmweaver.scene.layout.gravity import room_gravity
 from mmweaver.scene.layout.mesh import joined_meshes, rectangle_faces
-from mmweaver.scene.layout.panes import add_wall_panels, find_wall_panels
 from mmweaver.scene.layout.room_layout import estimate_layout
-from mmweaver.scene.layout.surface_materials import ASSUMPTION, ASSUMPTION_OF_CLASSES, MATERIAL_NAMES
-from mmweaver.scene.layout.surfaces import AlignedGrid
+from mmweaver.scene.layout.surfaces import ASSUMPTION, ASSUMPTION_OF_CLASSES, MATERIAL_NAMES, AlignedGrid
 from mmweaver.scene.multiview.fusion import joined_free_space, joined_grid, joined_places, joined_planes
 from mmweaver.scene.multiview.registration import ALONE, LevelPose, common_gravity, corrected_poses
+from mmweaver.scene.photo.capture_photo import PosedPhoto
 from mmweaver.scene.photo.depth_grid import GridBool, make_grid
-from mmweaver.scene.photo.posed_photo import PosedPhoto
 from mmweaver.scene.single_view import SingleView, see
 
 DEFAULT_FLOOR = "concrete"  # if no floor is visible

@@ -18,12 +18,10 @@ from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
 from mmweaver.core.safe_files.regular_files import foreign_errors
 from mmweaver.core.safe_files.safe_text import read_json, read_text
 from mmweaver.core.shapes import DepthPixels, RgbPixels
-from mmweaver.scene.photo.capture_photo import CapturedPhoto
+from mmweaver.scene.photo.capture_photo import CapturedPhoto, Pose, PosedPhoto
+from mmweaver.scene.photo.depth_grid import fill_scattered_holes
 from mmweaver.scene.photo.lzfse import read_lzfse
-from mmweaver.scene.photo.picture_files import read_depth, read_rgb
-from mmweaver.scene.photo.posed_photo import Pose, PosedPhoto
-from mmweaver.scene.photo.sparse_depth import fill_scattered_holes
-from mmweaver.scene.photo.video_frame import read_video_frame
+from mmweaver.scene.photo.picture_files import read_depth, read_rgb, read_video_frame
 from mmweaver.scene.read_photo import to_common_size
 
 MILLIMETRE, TUM_UNIT_M = 0.001, 0.0002

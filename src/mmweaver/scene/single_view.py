@@ -8,20 +8,21 @@ from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.pinhole import viewing_rays
 from mmweaver.core.records import FreeSpace, Plane, RgbdPhoto, Seat
 from mmweaver.core.shapes import Faces, PerFace, Vertices
-from mmweaver.scene.affordances.free_space import find_free_space
+from mmweaver.scene.affordances.landmarks import find_free_space
 from mmweaver.scene.affordances.seats import find_seats
 from mmweaver.scene.coco_stuff import ROUGH, WALLS
 from mmweaver.scene.layout.class_evidence import cells_of, seat_evidence
+from mmweaver.scene.layout.doors_and_windows import fill_panes
 from mmweaver.scene.layout.gravity import AlignedRoom, Gravity, align_room
 from mmweaver.scene.layout.height_map import HeightMap, make_height_map
 from mmweaver.scene.layout.mesh import make_mesh
-from mmweaver.scene.layout.panes import fill_panes
-from mmweaver.scene.layout.surface_materials import (
+from mmweaver.scene.layout.surfaces import (
     MATERIAL_NAMES,
+    Surface,
     apply_class_materials,
     cell_materials,
+    floor_cells,
 )
-from mmweaver.scene.layout.surfaces import Surface, floor_cells
 from mmweaver.scene.photo.depth_grid import DepthGrid, GridBool, GridInt, make_grid
 
 

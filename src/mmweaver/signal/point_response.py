@@ -22,9 +22,9 @@ from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid
-from mmweaver.core.tensor_record import TensorRecord
+from mmweaver.core.tensor_files import TensorRecord
 from mmweaver.signal import windows
-from mmweaver.signal.window_kernels import WindowKernel
+from mmweaver.signal.windows import WindowKernel
 
 FLAT_WAVELENGTHS = 0.05  # an aperture below this cannot resolve direction
 

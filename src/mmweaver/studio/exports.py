@@ -16,7 +16,7 @@ from mmweaver.io.result_folder import save_results
 from mmweaver.studio.sessions import Result
 from mmweaver.viz.figure_data import FigureData
 from mmweaver.viz.html_page import write_page
-from mmweaver.viz.previews import PREVIEWS
+from mmweaver.viz.preview import PREVIEWS
 
 MAX_EXPORT_BYTES = 4_000_000_000
 Export = Callable[[Result, Path], Path]  # writes into a folder and returns the file

@@ -12,8 +12,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.recognition.live_recogniser import LiveRecogniser
 from mmweaver.recognition.recogniser import Recogniser
 from mmweaver.studio.schemas import DEFAULT_BOARD, Form
+from mmweaver.viz.body_in_photo import pack
 from mmweaver.viz.sequence import make_playback
-from mmweaver.viz.wire import pack
 from mmweaver.weaver.front_door import Weaver
 from mmweaver.weaver.generation import Room
 from mmweaver.weaver.streaming import StreamChunk

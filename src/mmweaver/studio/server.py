@@ -1,14 +1,25 @@
-"""The studio's server: the page, its API, and access control."""
+"""The studio's server: the page, its API, and access control.
+
+Runs the studio's server: binds, prints the address, opens the browser once it is ready.
+
+Queue of the studio: first come, first served, one worker per core; a job whose tab is closed is dropped.
+"""
 
 import asyncio
 import contextlib
 import hmac
+import os
+import secrets
+import socket
+import webbrowser
 from collections.abc import AsyncIterator, Awaitable, Callable
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any, TypeVar
 from urllib.parse import urlsplit
 
+import uvicorn
 from starlette.applications import Starlette
 from starlette.datastructures import UploadFile
 from starlette.exceptions import HTTPException
@@ -22,13 +33,67 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.safe_text import parse_json
 from mmweaver.studio import exports, uploads
-from mmweaver.studio.jobs import BusyError, Jobs
 from mmweaver.studio.schemas import Form
 from mmweaver.studio.service import Service
 from mmweaver.studio.sessions import Session
 from mmweaver.viz.html_page import page_file
 
+MAX_WAITING = 200
+
 T = TypeVar("T")
+
+
+class BusyError(Exception):
+    """The queue is full."""
+
+
+class Jobs:
+    """Threads that share rooms and weights; their computations release the GIL."""
+
+    def __init__(self, workers: int | None = None):
+        self.workers = workers or max(1, len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 2)
+        self._pool = ThreadPoolExecutor(self.workers, thread_name_prefix="studio")
+        self.waiting = 0
+
+    async def run(self, work: Callable[[], T], gone: Callable[[], Awaitable[bool]] | None = None) -> T:
+        """Runs a job on the next free worker, in order of arrival.
+
+        Args:
+            work: The job.
+            gone: Polled for whether the client has left; then a waiting job is dropped.
+
+        Returns:
+            The result of the job.
+
+        Raises:
+            BusyError: If too many jobs are waiting.
+            asyncio.CancelledError: If the client has left.
+        """
+        if self.waiting >= MAX_WAITING:
+            raise BusyError
+        self.waiting += 1
+        try:
+            submitted = self.submit(work)
+            job = asyncio.wrap_future(submitted)
+            while True:
+                done, _ = await asyncio.wait([job], timeout=0.25)
+                if done:
+                    return job.result()
+                if gone is not None and await gone():
+                    submitted.cancel()  # at once: a cancelled asyncio future would reach the pool a turn later
+                    raise asyncio.CancelledError
+        finally:
+            self.waiting -= 1
+
+    def submit(self, work: Callable[[], T]) -> "Future[T]":
+        """Queues `work` for the next free worker."""
+        return self._pool.submit(work)
+
+    def stop(self) -> None:
+        """Drops waiting jobs; a running job finishes on its own."""
+        self._pool.shutdown(wait=False, cancel_futures=True)
+
+
 Work = Callable[[Session, dict[str, Any]], Any]
 LOOPBACK = {"127.0.0.1", "localhost", "::1"}
 MAX_JSON_BYTES = 100_000
@@ -260,3 +325,85 @@ async def _refused(_: Request, error: Exception) -> Response:
 
 async def _busy(_: Request, __: Exception) -> Response:
     return JSONResponse({"error": "too many are waiting; try again in a minute"}, status_code=503)
+
+
+class _Announcing(uvicorn.Server):
+    """Announces when it is ready to answer."""
+
+    def __init__(self, config: uvicorn.Config, address: str, announce: Callable[[str], None], open_browser: bool):
+        super().__init__(config)
+        self._address, self._announce, self._open = address, announce, open_browser
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets)
+        self._announce(f"mmweaver studio is ready: {self._address}   (Ctrl+C ends it)")
+        if self._open:
+            webbrowser.open(self._address)
+
+
+def serve(
+    rooms: list[Path],
+    recordings: list[Path],
+    recognisers: list[Path],
+    *,
+    host: str,
+    port: int,
+    workers: int | None,
+    announce: Callable[[str], None],
+    open_browser: bool,
+) -> None:
+    """Serves until interrupted.
+
+    Args:
+        rooms: Folders of rooms to offer.
+        recordings: Recordings to offer.
+        recognisers: Folders of recognisers to offer.
+        host: Address to bind; other than the loopback requires a token.
+        port: Port to bind; 0 for any free one.
+        workers: Number of worker threads; by default one per core.
+        announce: Called with each line for the user.
+        open_browser: Whether the page is opened.
+
+    Raises:
+        InputError: If the address is not available, or a room, recording or recogniser is not valid.
+    """
+    bound = _bind(host, port)
+    port = bound.getsockname()[1]
+    token = None if host in LOOPBACK else secrets.token_urlsafe(24)
+    names = LOOPBACK if token is None else LOOPBACK | {host, socket.gethostname(), *_own_addresses()}
+    shown = "localhost" if host in ("0.0.0.0", "::") else host
+    address = f"http://{shown}:{port}/" + ("" if token is None else f"?token={token}")
+    try:
+        studio = StudioServer(Service(rooms, recordings, recognisers), workers=workers)
+        config = uvicorn.Config(
+            studio.app(hosts=set(names), token=token),
+            log_level="warning",
+            ws_max_size=1 << 20,
+            timeout_graceful_shutdown=2,
+            limit_concurrency=400,
+        )
+        announce("mmweaver studio is warming up ...")
+        _Announcing(config, address, announce, open_browser).run(sockets=[bound])
+    finally:
+        bound.close()
+
+
+def _bind(host: str, port: int) -> socket.socket:
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    bound = socket.socket(family)
+    bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        bound.bind((host, port))
+    except (OSError, OverflowError) as error:
+        bound.close()
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"cannot listen on {host} port {port}: {reason}; choose another --port or --host") from None
+    return bound
+
+
+def _own_addresses() -> set[str]:
+    """Addresses of this machine's host name, where they can be resolved."""
+    try:
+        return {str(entry[4][0]) for entry in socket.getaddrinfo(socket.gethostname(), None)}
+    except OSError:
+        return set()

@@ -12,9 +12,8 @@ from threading import Lock
 from typing import Any, Generic, TypeVar
 
 from mmweaver.core.board import Board
-from mmweaver.core.boards import find_board
+from mmweaver.core.boards import PRESETS, find_board
 from mmweaver.core.errors import InputError, NoRoomError
-from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.evaluation.compare_signals import FeatureComparison, compare_signals
 from mmweaver.evaluation.signal_evidence import ComparedSignal
@@ -28,8 +27,8 @@ from mmweaver.studio.live import Live
 from mmweaver.studio.recordings import check_offered, read_offered
 from mmweaver.studio.schemas import Form
 from mmweaver.studio.sessions import BroughtRoom, Result, Session, Sessions
-from mmweaver.viz.room import room_playback
-from mmweaver.viz.wire import pack
+from mmweaver.viz.body_in_photo import pack
+from mmweaver.viz.sequence import room_playback
 from mmweaver.weaver.front_door import Weaver
 from mmweaver.weaver.generation import Generation, Room
 

@@ -18,7 +18,7 @@ from mmweaver.core.tensor_files import read_tensors, write_tensors
 from mmweaver.datasets.activity_store import SPLITS, ActivitySet, is_activity_set
 from mmweaver.datasets.room_sequences import LabelledData, labels_of, plan_of, read_labelled
 from mmweaver.models.activity_network import ActivityNetwork
-from mmweaver.models.log_maps import SPREAD_DB, LogMaps
+from mmweaver.models.frame_motion import SPREAD_DB, LogMaps
 from mmweaver.training.device import ComputeDevice, Share
 from mmweaver.training.model_card import ACTIVITY, OWN, Figures
 from mmweaver.training.trained_weights import write_recipe_weights

@@ -18,10 +18,9 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.core.tensor_files import sha256_of
 from mmweaver.models.scatterer_network import WeaverNetwork
-from mmweaver.propagation.background import agreeing_gain
-from mmweaver.propagation.mean_power import PowerMaps
-from mmweaver.propagation.mean_scatterers import MeanEchoes
+from mmweaver.propagation.mean_power import MeanEchoes, PowerMaps
 from mmweaver.propagation.radar_equation import points_of
+from mmweaver.propagation.receiver import agreeing_gain
 from mmweaver.training.captures import SPLIT, Capture, RecordedRoom, rooms_of
 from mmweaver.training.device import ComputeDevice
 from mmweaver.training.model_card import WEAVER

@@ -28,11 +28,11 @@ from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.datasets.checked_folder import CheckedFolder
 from mmweaver.datasets.dataset_store import StoredRoom
 from mmweaver.io.npz_files import read_poses_npz
-from mmweaver.motion.animation.resample import joints_and_velocities
+from mmweaver.motion.animation.root_path import joints_and_velocities
 from mmweaver.recordings.read_recording import read_recording
 from mmweaver.scene.photo.capture_photo import photo_folder, read_capture_photo
+from mmweaver.scene.photo_files import sample_photo
 from mmweaver.scene.read_photo import read_photo
-from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.signal.spectra import noise_power
 
 POSE, META = "pose.npz", "meta.json"

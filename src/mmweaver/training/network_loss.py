@@ -14,8 +14,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from mmweaver.propagation.mean_power import MeanPower, PowerMaps
-from mmweaver.propagation.mean_scatterers import MeanEchoes
+from mmweaver.propagation.mean_power import MeanEchoes, MeanPower, PowerMaps
 from mmweaver.propagation.radar_equation import points_of
 
 STEEPEST = 8.0

@@ -14,8 +14,7 @@ from mmweaver.datasets.dataset_store import plan_text, read_plan
 from mmweaver.models.environment_encoder import DEFAULT_ENCODER
 from mmweaver.models.precision import exactly
 from mmweaver.models.scatterer_network import ScattererNetwork, WeaverNetwork
-from mmweaver.propagation.mean_power import MeanPower, PowerMaps
-from mmweaver.propagation.mean_scatterers import MeanEchoes
+from mmweaver.propagation.mean_power import MeanEchoes, MeanPower, PowerMaps
 from mmweaver.propagation.radar_equation import points_of
 from mmweaver.training.device import ComputeDevice, moved
 from mmweaver.training.model_card import WEAVER, Figures

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.atomic_files import atomic_file
-from mmweaver.core.version import __version__
+from mmweaver.core.constants import __version__
 from mmweaver.datasets.activity_store import is_activity_set
 from mmweaver.datasets.room_sequences import plan_of, radar_of, read_labelled
 from mmweaver.models.hub import CARD_FILE

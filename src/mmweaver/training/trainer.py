@@ -8,9 +8,15 @@
 
 A recipe is a dataclass derived from `LoopRecipe`, a network a `Learner`.
 Reference: docs/decisions/training-loop.md.
+
+Log of a training run: rows of figures, pictures, and TensorBoard files.
+
+Interruptible training: state is saved regularly, and training resumes from it.
 """
 
+import io
 import json
+import logging
 import math
 import time
 from collections.abc import Callable, Iterator
@@ -22,13 +28,184 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
+from mmweaver.core.atomic_files import append_line, atomic_file
 from mmweaver.core.errors import InputError
-from mmweaver.core.safe_files.safe_text import parse_json
+from mmweaver.core.optional_packages import need
+from mmweaver.core.safe_files.safe_tensors import read_checkpoint
+from mmweaver.core.safe_files.safe_text import parse_json, read_text
 from mmweaver.core.seeding import stream
 from mmweaver.core.tensor_files import read_tensors, write_tensors
 from mmweaver.training.device import ComputeDevice, Share
-from mmweaver.training.resuming import Resumable
-from mmweaver.training.run_log import RunLog
+
+SAVE_EVERY_S = 60.0
+log = logging.getLogger(__name__)
+
+
+class Resumable:
+    """Counts steps, saves the state of a run regularly, and resumes a saved run.
+
+    Of several processes all load and one saves. A run resumes with its original number of threads, since sums over
+    another number of threads differ in their last bits.
+
+    Attributes:
+        done: Number of completed steps.
+        history: Rows of figures, saved with the state.
+    """
+
+    def __init__(self, file: Path | None, parts: dict[str, Any], *, every_s: float | None = None, writes: bool = True):
+        """Loads the state if the file exists.
+
+        Args:
+            file: Checkpoint; None to save nothing.
+            parts: Objects with `state_dict` and `load_state_dict`, by name.
+            every_s: Seconds between checkpoints. Default: 60.
+            writes: Whether this process saves. Default: True.
+
+        Raises:
+            InputError: If the checkpoint is damaged or has other settings.
+        """
+        self.file, self.parts, self.every_s, self.writes = file, parts, every_s, writes
+        self.done = 0
+        self.history: list[dict[str, float]] = []
+        self._is_last = False
+        if file is not None and file.is_file():
+            self._load(file)
+
+    def steps(self, most: int) -> Iterator[int]:
+        """Iterates over the remaining steps and saves the state in between.
+
+        Args:
+            most: Total number of steps.
+
+        Yields:
+            Number of completed steps.
+        """
+        every_s = SAVE_EVERY_S if self.every_s is None else self.every_s
+        saved = time.monotonic()
+        while self.done < most and not self._is_last:
+            yield self.done
+            self.done += 1
+            if time.monotonic() - saved > every_s or self.done == most or self._is_last:
+                self._save()
+                saved = time.monotonic()
+
+    def stop(self) -> None:
+        """Makes the current step the last one."""
+        self._is_last = True
+
+    def _save(self) -> None:
+        if self.file is None or not self.writes:
+            return
+        states = {name: part.state_dict() for name, part in self.parts.items()}
+        state = {"done": self.done, "history": self.history, "parts": states}
+        packed = io.BytesIO()  # torch.save to a full disk raises errors of many types
+        torch.save(state | {"threads": torch.get_num_threads()}, packed)
+        with atomic_file(self.file) as temporary:
+            temporary.write_bytes(packed.getbuffer())
+
+    def _load(self, file: Path) -> None:
+        saved = read_checkpoint(file, what="no checkpoint ({reason}); delete it to start over")
+        try:
+            for name, part in self.parts.items():
+                part.load_state_dict(saved["parts"][name])
+        except Exception as error:
+            raise InputError(
+                f"{file} cannot be resumed ({str(error).splitlines()[0][:80]}); delete it to start over"
+            ) from None
+        self.done, self.history = saved["done"], saved["history"]
+        _use_threads(int(saved.get("threads", torch.get_num_threads())), file)  # missing in older files
+
+
+def _use_threads(threads: int, file: Path) -> None:
+    if threads != torch.get_num_threads():
+        log.warning("%s was written with %d threads; training resumes with %d", file, threads, threads)
+        torch.set_num_threads(threads)
+
+
+ROW_EVERY = 50  # steps
+LOG, PICTURES, BOARD = "log.jsonl", "pictures", "tensorboard"
+
+
+class RunLog:
+    """log.jsonl, pictures/ and, if requested, tensorboard/ in the folder of a run."""
+
+    def __init__(self, out: Path, done: int, *, tensorboard: bool = False):
+        """Opens the log and drops entries of an interrupted run after its checkpoint.
+
+        Args:
+            out: Folder of the run.
+            done: Number of completed steps.
+            tensorboard: Whether to write TensorBoard files. Default: False.
+
+        Raises:
+            InputError: If TensorBoard is requested but not installed.
+        """
+        self.out, self.file = out, out / LOG
+        self.board = _writer(out / BOARD, done) if tensorboard else None
+        if self.file.is_file():
+            kept = [line for line in read_text(self.file).splitlines() if _step_of(line) <= done]
+            with atomic_file(self.file) as temporary:
+                temporary.write_text("".join(f"{line}\n" for line in kept), encoding="utf-8")
+
+    def row(self, figures: dict[str, Any]) -> None:
+        """Logs the figures of a step if it is a multiple of 50 or has a validation.
+
+        Args:
+            figures: Fields of `Progress`.
+        """
+        step = figures["step"]
+        if step % ROW_EVERY and figures["validation"] is None:
+            return
+        append_line(self.file, json.dumps(figures))
+        if self.board is not None:
+            for name, value in _scalars(figures).items():
+                self.board.add_scalar(name, value, step)
+            self.board.flush()
+
+    def picture(self, step: int, image: np.ndarray) -> None:
+        """Saves a picture.
+
+        Args:
+            step: Number of completed steps.
+            image: Picture, (row, column, 3) uint8.
+        """
+        from PIL import Image
+
+        with atomic_file(self.out / PICTURES / f"step_{step:06d}.png") as temporary:
+            Image.fromarray(image).save(temporary, "PNG")
+        if self.board is not None:
+            self.board.add_image("validation", image, step, dataformats="HWC")
+
+    def close(self) -> None:
+        """Closes the TensorBoard files."""
+        if self.board is not None:
+            self.board.close()
+
+
+def _scalars(figures: dict[str, Any]) -> dict[str, float]:
+    """{"loss": 1, "terms": {"a": 1}} -> {"loss": 1, "terms/a": 1}; None is dropped."""
+    flat: dict[str, float] = {}
+    for name, value in figures.items():
+        if isinstance(value, dict):
+            flat |= {f"{name}/{part}": own for part, own in value.items()}
+        elif value is not None and name not in ("step", "steps"):
+            flat[name] = value
+    return flat
+
+
+def _step_of(line: str) -> float:
+    try:
+        return float(parse_json(line, "a line of the log")["step"])
+    except (ValueError, KeyError, TypeError):
+        return float("inf")  # an incomplete line of a killed process
+
+
+def _writer(folder: Path, done: int) -> Any:
+    need("training", "--tensorboard", "tensorboard")
+    from torch.utils.tensorboard import SummaryWriter
+
+    return SummaryWriter(str(folder), purge_step=done + 1 if done else None)
+
 
 BEST_FILE = "best.safetensors"
 WORST_SKIPS = 20  # consecutive steps with non-finite gradients after which training stops

@@ -10,8 +10,7 @@ import numpy as np
 from mmweaver.viz.body_in_photo import BodyPainter
 from mmweaver.viz.body_rasteriser import bodies_of
 from mmweaver.viz.figure_data import Fan, FigureData
-from mmweaver.viz.power_scale import Extent
-from mmweaver.viz.theme import STYLE, label_axes, person_colour, shortened
+from mmweaver.viz.theme import STYLE, Extent, label_axes, person_colour, shortened
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

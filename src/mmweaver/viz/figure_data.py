@@ -22,8 +22,7 @@ from mmweaver.signal.spectra import (
     range_elevation_power,
 )
 from mmweaver.signal.windows import MIN_HANN_LOOPS
-from mmweaver.viz.power_scale import PowerScale
-from mmweaver.viz.theme import evenly_spaced
+from mmweaver.viz.theme import PowerScale, evenly_spaced
 
 MAX_FRAMES = 100  # longer sequences are thinned out
 SLOW_OVER_NOISE = 10.0  # minimum power of changes between frames over the noise

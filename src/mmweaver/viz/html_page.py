@@ -8,8 +8,8 @@ from pathlib import Path
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.regular_files import MEGABYTE, read_bytes
+from mmweaver.viz.body_in_photo import pack
 from mmweaver.viz.sequence import Playback
-from mmweaver.viz.wire import pack
 
 OFFLINE_ROOM_POINTS = 30_000
 

@@ -3,9 +3,9 @@
 from typing import Any
 
 from mmweaver.core.optional_packages import need
+from mmweaver.viz.body_in_photo import pack
 from mmweaver.viz.html_page import page_file
 from mmweaver.viz.sequence import Playback
-from mmweaver.viz.wire import pack
 
 
 def player_widget(sequence: Playback, room: Playback | None) -> Any:

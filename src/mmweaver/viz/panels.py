@@ -13,13 +13,13 @@ from mmweaver.signal.slow_time import SlowTimeCell
 from mmweaver.viz.body_in_photo import BodyPainter
 from mmweaver.viz.body_rasteriser import bodies_of
 from mmweaver.viz.figure_data import Fan, FigureData
-from mmweaver.viz.power_scale import PowerScale
 from mmweaver.viz.theme import (
     INK,
     PAPER,
     PEOPLE_ON_WHITE,
     TIME_MAP,
     VELOCITY_MAP,
+    PowerScale,
     colour_bar,
     evenly_spaced,
     label_axes,

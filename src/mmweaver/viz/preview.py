@@ -3,6 +3,8 @@
 All panels of power share one scale of decibels (`viz.power_scale`). Panels without meaning for a signal are replaced: a
 single frame has profiles in place of strips over time, slow motion is shown over frames, and only arrays that resolve
 elevation have an elevation map.
+
+The pictures of a folder of results, by file name.
 """
 
 from collections.abc import Callable
@@ -11,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from mmweaver.core.virtual_array import resolves_elevation
 from mmweaver.viz import panels
+from mmweaver.viz.animation import draw_animation
 from mmweaver.viz.figure_data import FigureData
 from mmweaver.viz.theme import page
 
@@ -84,3 +87,6 @@ def _draw_displacement(axes: "Axes", view: FigureData) -> None:
 
 def _draw_slow_doppler(axes: "Axes", view: FigureData) -> None:
     panels.draw_slow_doppler(axes, view.scale, *view.slow_doppler, view.range_edges_m)
+
+
+PREVIEWS = {"preview.png": draw_preview, "preview.gif": draw_animation}

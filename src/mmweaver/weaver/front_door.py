@@ -14,26 +14,24 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.core.board import Board
-from mmweaver.core.boards import IDEAL_BOARD, compensated
-from mmweaver.core.channel_calibration import ChannelCalibration
-from mmweaver.core.default_precision import single_precision
+from mmweaver.core.board import Board, ChannelCalibration
+from mmweaver.core.boards import IDEAL_BOARD, PRESETS, compensated
+from mmweaver.core.constants import __version__
 from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.options import keywords_of
-from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import AT_CAMERA
 from mmweaver.core.records import PoseSequence, Scene
+from mmweaver.core.seeding import single_precision
 from mmweaver.core.skeleton import joint
 from mmweaver.core.stages import Stages
-from mmweaver.core.version import __version__
 from mmweaver.evaluation.background_board import BackgroundBoard
 from mmweaver.io.radar_file import load_firmware, load_radar
 from mmweaver.io.result_folder import META_VERSION, file_digest
 from mmweaver.io.ti_calibration import read_ti_calibration
 from mmweaver.models.methods import DEFAULT_METHOD, METHODS, Learned, Method, Signal
-from mmweaver.motion.animation.resample import resample
+from mmweaver.motion.animation.root_path import resample
 from mmweaver.motion.compose import Motion
 from mmweaver.motion.continuous import ContinuousMotion
 from mmweaver.motion.mocap.clip import MotionClip

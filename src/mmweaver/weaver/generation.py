@@ -11,15 +11,14 @@ from mmweaver.core.atomic_files import staged_folder
 from mmweaver.core.board import Board, read_board
 from mmweaver.core.boards import IDEAL_BOARD
 from mmweaver.core.errors import InputError
-from mmweaver.core.record_display import ShownByFacts
+from mmweaver.core.record_values import ShownByFacts
 from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, RgbdPhoto, Scene
 from mmweaver.core.stages import Stages
 from mmweaver.io.result_folder import BOARD_FILE, file_digest, plain, radar_folder, save_results
 from mmweaver.scene.affordances.landmarks import add_landmarks
-from mmweaver.scene.photo.posed_photo import PosedPhoto
+from mmweaver.scene.photo.capture_photo import PosedPhoto
 from mmweaver.viz.figure_data import FigureData
-from mmweaver.viz.preview import draw_preview
-from mmweaver.viz.previews import PREVIEWS
+from mmweaver.viz.preview import PREVIEWS, draw_preview
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -171,8 +170,7 @@ class Generation(ShownByFacts):
     def _playback(self) -> "tuple[Playback, Playback]":
         """The sequence and its room, for the playback page."""
         from mmweaver.viz.html_page import OFFLINE_ROOM_POINTS
-        from mmweaver.viz.room import room_playback
-        from mmweaver.viz.sequence import make_playback
+        from mmweaver.viz.sequence import make_playback, room_playback
 
         if not self.scene.radar_pose.is_at_camera:
             raise InputError("the page shows radars at the camera only; look at preview.png of a radar elsewhere")

@@ -13,13 +13,12 @@ from mmweaver.core.options import Place
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import RadarPose, check_poses
 from mmweaver.io.result_folder import radar_meta
-from mmweaver.motion.empty_scene import NOBODY, says_nobody
+from mmweaver.motion.empty_floor import NOBODY, says_nobody
 from mmweaver.motion.language.plan import APPROXIMATED, MotionPlan
-from mmweaver.motion.language.sentence_parser import parse_sentence
-from mmweaver.motion.language.step_names import add_shown_text
+from mmweaver.motion.language.postures import add_shown_text
+from mmweaver.motion.language.sentence import parse_sentence
 from mmweaver.motion.language.timing import natural_s, repeated, schedule
-from mmweaver.motion.mocap.clip import MotionClip
-from mmweaver.motion.mocap.clip_resampling import check_lasts
+from mmweaver.motion.mocap.clip import MotionClip, check_lasts
 from mmweaver.motion.multi_person import MOST_PEOPLE
 from mmweaver.motion.people import check_subject
 from mmweaver.motion.planning.targets import SHORTEST_PATH_M

@@ -40,7 +40,7 @@ def radar(config: "RadarConfig") -> None:
     Raises:
         InputError: If the name is taken.
     """
-    from mmweaver.core.presets import PRESETS
+    from mmweaver.core.boards import PRESETS
 
     PRESETS.register(config.name, config)
 

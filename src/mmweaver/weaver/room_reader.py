@@ -10,14 +10,12 @@ from mmweaver.core.records import RgbdPhoto
 from mmweaver.core.stages import Stages
 from mmweaver.io.result_folder import file_digest
 from mmweaver.scene.multiview.view_file import read_views
-from mmweaver.scene.photo.capture_photo import DEPTH, read_capture_photo
+from mmweaver.scene.photo.capture_photo import DEPTH, PosedPhoto, read_capture_photo
 from mmweaver.scene.photo.estimated_depth import scale_note
-from mmweaver.scene.photo.posed_photo import PosedPhoto
-from mmweaver.scene.photo_files import RoomFiles
+from mmweaver.scene.photo_files import RoomFiles, sample_photo
 from mmweaver.scene.read_photo import classes_of, read_photo
 from mmweaver.scene.realsense_bag import is_bag, read_bag_photo
 from mmweaver.scene.reconstruction import reconstruct
-from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.scene.scan_folders import read_scan_photo, refuse_unread, scan_kind
 from mmweaver.scene.scanned_mesh.read_mesh import SUFFIXES as MESH_SUFFIXES
 from mmweaver.weaver.generation import Room

@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from mmweaver.core.default_precision import single_precision
 from mmweaver.core.errors import InputError
-from mmweaver.core.record_display import ShownByFacts
+from mmweaver.core.record_values import ShownByFacts
 from mmweaver.core.records import AdcCube, CubeGrid, PointCloud, PoseSequence, RadarCube
+from mmweaver.core.seeding import single_precision
 from mmweaver.core.stages import Stages
 from mmweaver.models.methods import Method, Signal
-from mmweaver.motion.animation.resample import resample
+from mmweaver.motion.animation.root_path import resample
 from mmweaver.motion.continuous import ContinuousMotion, MotionPart
 from mmweaver.signal.detection import detect, needs_adc
 from mmweaver.weaver.generation import Room

@@ -121,7 +121,7 @@ def check_activity(key: str) -> None:
     """
     from mmweaver.motion.empty_floor import act_out
     from mmweaver.motion.language.activities import BY_KEY
-    from mmweaver.motion.language.sentence_parser import parse_sentence
+    from mmweaver.motion.language.sentence import parse_sentence
 
     assert key in BY_KEY, f"there is no activity {key!r}; register it first"
     activity = BY_KEY[key]

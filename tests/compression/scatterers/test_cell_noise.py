@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.compression.scatterers.cell_noise import cell_noise, overlapping_noise
-from mmweaver.core.presets import AWR1843
+from mmweaver.compression.scatterers.layers import cell_noise, overlapping_noise
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.signal.cube import radar_cube

@@ -1,6 +1,6 @@
 import torch
 
-from mmweaver.compression.beams import beams_of
+from mmweaver.compression.quantised_cells import beams_of
 from mmweaver.compression.scatterers.fit_window import FitWindow
 from mmweaver.compression.scatterers.fitting import FitRecipe, fitted
 from mmweaver.compression.scatterers.layers import rendered, static_cells

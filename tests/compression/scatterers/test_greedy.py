@@ -1,7 +1,7 @@
 import numpy as np
 
 from mmweaver.compression.scatterers.fit_window import FitWindow
-from mmweaver.compression.scatterers.greedy import Beams, Greedy, peaks
+from mmweaver.compression.scatterers.fitting import Beams, Greedy, peaks
 from mmweaver.signal.point_response import PointResponse
 from tests.compression.echoes import SMALL, direction_of, exact_point
 

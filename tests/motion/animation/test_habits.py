@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mmweaver.motion.animation.habits import Habits, habits_of
+from mmweaver.motion.animation.controls import Habits, habits_of
 from mmweaver.motion.empty_floor import act_out
 
 TIME_S = np.arange(-0.5, 20.5, 1 / 120)

@@ -5,7 +5,7 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence
-from mmweaver.motion.animation.resample import resample
+from mmweaver.motion.animation.root_path import resample
 
 
 def moving(time_s: np.ndarray) -> PoseSequence:

@@ -4,8 +4,8 @@ import pytest
 
 from mmweaver.motion.language.explanations import add_explanations
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, ClauseRecord, Side, Step, Way
+from mmweaver.motion.language.postures import add_shown_text
 from mmweaver.motion.language.sentence import parse
-from mmweaver.motion.language.step_names import add_shown_text
 
 
 def said(words: str, *steps: Step, status: str = APPROXIMATED, how: str = "'so' is not shown") -> ClauseRecord:

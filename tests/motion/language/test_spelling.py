@@ -1,7 +1,7 @@
 import pytest
 
 from mmweaver.motion.language.sentence import parse
-from mmweaver.motion.language.spelling import correct_spelling, corrected_word
+from mmweaver.motion.language.words import correct_spelling, corrected_word
 
 
 def test_slips_are_mended_and_told():

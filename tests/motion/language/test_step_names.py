@@ -12,7 +12,7 @@ from mmweaver.motion.animation.step_context import StepContext
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.places import Place
 from mmweaver.motion.language.plan import NOT_DONE, ClauseRecord, Shape, Side, Step, Way
-from mmweaver.motion.language.step_names import add_shown_text, doing, in_turn, steps_of_each
+from mmweaver.motion.language.postures import add_shown_text, doing, in_turn, steps_of_each
 from mmweaver.motion.language.timing import plan_motion
 
 WALK, WAVE = Step(lower="walk"), Step(upper="wave")

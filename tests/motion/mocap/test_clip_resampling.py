@@ -6,8 +6,7 @@ from mocap_files import walk
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import BONES
-from mmweaver.motion.mocap.clip import MotionClip
-from mmweaver.motion.mocap.clip_resampling import check_lasts, low_passed, resampled_clip
+from mmweaver.motion.mocap.clip import MotionClip, check_lasts, low_passed, resampled_clip
 
 TRUTH_FPS = 120.0
 

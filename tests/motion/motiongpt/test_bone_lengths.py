@@ -4,7 +4,7 @@ import numpy as np
 from mocap_files import walk
 
 from mmweaver.core.skeleton import BONES
-from mmweaver.motion.motiongpt.bone_lengths import fix_bone_lengths
+from mmweaver.motion.motiongpt.motiongpt import fix_bone_lengths
 
 
 def test_stretching_goes_and_directions_stay():

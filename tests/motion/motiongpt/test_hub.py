@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from mmweaver.core.errors import InputError
-from mmweaver.motion.motiongpt.hub import PUBLISHED, SMALL, looks_like_hub, published_checkpoint
+from mmweaver.motion.motiongpt.checkpoint import PUBLISHED, SMALL, looks_like_hub, published_checkpoint
 
 
 def test_names_and_paths_are_told_apart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial import KDTree
 
-from mmweaver.motion.planning.distance_field import CELL_M, FARTHEST_M, distance_field, interior, thinned
+from mmweaver.motion.planning.collision import CELL_M, FARTHEST_M, distance_field, interior, thinned
 
 LOW_M, HIGH_M = np.zeros(3), np.array([1.5, 1.0, 1.0])
 

@@ -7,7 +7,7 @@ import pytest
 
 from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.records import Seat
-from mmweaver.scene.affordances.chair_backs import chairs_behind_tables
+from mmweaver.scene.affordances.seats import chairs_behind_tables
 from mmweaver.scene.layout.height_map import HeightMap, make_height_map
 from tests.motion.rooms import room as bare_room
 

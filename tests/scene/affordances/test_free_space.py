@@ -6,7 +6,7 @@ import numpy as np
 
 from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.records import CameraIntrinsics, FreeSpace, Plane, RgbdPhoto
-from mmweaver.scene.affordances.free_space import find_assumed_floor, find_free_space
+from mmweaver.scene.affordances.landmarks import find_assumed_floor, find_free_space
 from mmweaver.scene.layout.height_map import make_height_map
 from mmweaver.scene.reconstruction import reconstruct
 

@@ -8,7 +8,7 @@ import pytest
 from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.records import CameraIntrinsics, ClassMask, Plane, RgbdPhoto
 from mmweaver.scene.coco_stuff import NAMES
-from mmweaver.scene.layout.panes import add_wall_panels, fill_panes, find_wall_panels
+from mmweaver.scene.layout.doors_and_windows import add_wall_panels, fill_panes, find_wall_panels
 from tests.rooms import back_wall, plane, side_wall
 
 SHAPE = (120, 160)

@@ -8,7 +8,7 @@ import pytest
 
 from mmweaver.core.records import ClassMask, RgbdPhoto, Scene
 from mmweaver.scene.coco_stuff import NAMES
-from mmweaver.scene.layout.surface_materials import MATERIAL_NAMES, floor_material
+from mmweaver.scene.layout.surfaces import MATERIAL_NAMES, floor_material
 from mmweaver.scene.reconstruction import reconstruct
 
 

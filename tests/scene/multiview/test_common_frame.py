@@ -6,7 +6,7 @@ import pytest
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
 from mmweaver.scene.layout.gravity import Gravity
 from mmweaver.scene.multiview.registration import common_gravity
-from mmweaver.scene.photo.posed_photo import PosedPhoto
+from mmweaver.scene.photo.capture_photo import PosedPhoto
 
 UP = np.array([0.0, -1.0, 0.0])
 TILTED = np.array([0.0, -np.cos(0.4), np.sin(0.4)])

@@ -7,7 +7,7 @@ from mmweaver.core.pinhole import viewing_rays
 from mmweaver.core.radar_pose import RadarPose
 from mmweaver.core.ray_caster import RayCaster
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
-from mmweaver.scene.photo.posed_photo import PosedPhoto
+from mmweaver.scene.photo.capture_photo import PosedPhoto
 from mmweaver.scene.reconstruction import reconstruct
 
 LEFT, RIGHT, BACK, FRONT, HEIGHT = -1.8, 2.4, -0.6, 4.4, 2.5

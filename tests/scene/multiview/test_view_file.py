@@ -10,7 +10,7 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_pose import RadarPose
 from mmweaver.scene.multiview.view_file import read_views
-from mmweaver.scene.sample_photo import sample_photo
+from mmweaver.scene.photo_files import sample_photo
 
 IDENTITY = np.eye(4).tolist()
 AHEAD = [[1, 0, 0, 0.0], [0, 1, 0, 0], [0, 0, 1, 2.0], [0, 0, 0, 1]]

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mmweaver.core.errors import InputError
-from mmweaver.scene.photo.pretrained import load_pretrained
+from mmweaver.scene.photo.estimated_depth import load_pretrained
 from tests.scene import models
 
 pytest.importorskip("transformers")

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mmweaver.scene.photo.sparse_depth import fill_scattered_holes
+from mmweaver.scene.photo.depth_grid import fill_scattered_holes
 
 
 def test_a_dense_picture_is_left_alone():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.errors import InputError
-from mmweaver.scene.photo.video_frame import read_video_frame
+from mmweaver.scene.photo.picture_files import read_video_frame
 from tests.captures import avi_of
 
 RAMP = np.arange(64, dtype=np.uint8)[None, :, None]

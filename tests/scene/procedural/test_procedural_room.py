@@ -3,16 +3,15 @@
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
 from mmweaver.core.pinhole import unproject
-from mmweaver.core.presets import AWR1843
 from mmweaver.core.radar_pose import RadarPose
 from mmweaver.propagation.paths import Interaction
 from mmweaver.propagation.ray_traced import Simulator
-from mmweaver.scene.procedural.arrangement import MIN_FREE_M2, MIN_WALKABLE_M2
+from mmweaver.scene.procedural.arrangement import KINDS, MIN_FREE_M2, MIN_WALKABLE_M2
 from mmweaver.scene.procedural.parts import Boxes
 from mmweaver.scene.procedural.procedural_room import ProceduralRoom, make_room
-from mmweaver.scene.procedural.room_kinds import KINDS
 from studies.scene.room_contact import signed_distance_m
 
 TOUCH_M = 0.006

@@ -14,9 +14,8 @@ import trimesh
 from mmweaver import Weaver
 from mmweaver.core.errors import InputError
 from mmweaver.scene.coco_stuff import NAMES
-from mmweaver.scene.scanned_mesh.mesh_photo import read_mesh_photo
+from mmweaver.scene.scanned_mesh.mesh_photo import read_mesh_photo, upright
 from mmweaver.scene.scanned_mesh.read_mesh import read_mesh
-from mmweaver.scene.scanned_mesh.upright import upright
 
 SIZE_M = (5.0, 6.0, 2.6)
 Y_UP = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from mmweaver.scene.photo.depth_grid import make_grid
-from mmweaver.scene.sample_photo import sample_photo
-from mmweaver.scene.segmentation.segmenter_features import (
+from mmweaver.scene.photo_files import sample_photo
+from mmweaver.scene.segmentation.builtin_segmenter import (
     CHANNELS,
     HEIGHT,
     HEIGHT_UNIT_M,

@@ -3,7 +3,7 @@ from dataclasses import replace
 
 import pytest
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import CubeGrid
 from mmweaver.core.seeding import stream
 from studies.fields import field_fidelity

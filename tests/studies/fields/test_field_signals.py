@@ -3,8 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.propagation.paths import Interaction
 from mmweaver.signal.spectra import moving_doppler, range_doppler_power
 from studies.fields.field_signals import SIGNALS, sample_scene, simulated, simulator_of, without_room

@@ -3,10 +3,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.compression.phase_centring import centred
-from mmweaver.compression.signal_field import coordinates_on, finer_grid
+from mmweaver.compression.signal_field import centred, coordinates_on, finer_grid
+from mmweaver.core.boards import AWR1843, BGT60
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843, BGT60
 from mmweaver.core.records import AdcCube, PoseSequence
 from mmweaver.signal.cube import adc_from_cube, radar_cube
 from studies.fields.finer_radar import (

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import BGT60
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import BGT60
 from mmweaver.core.records import AdcCube
 from mmweaver.signal.cube import radar_cube
 from studies.fields.codec_cuts import USUAL

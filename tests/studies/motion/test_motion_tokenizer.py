@@ -47,19 +47,19 @@ def test_an_interruption_changes_nothing(tmp_path: Path):
 
 def _stop_after(recipe: TokenizerRecipe, steps: int, state: Path) -> None:
     """The same recipe, interrupted, with the usual saves."""
-    from mmweaver.training import resuming
+    from mmweaver.training import trainer
 
-    every, resuming.SAVE_EVERY_S = resuming.SAVE_EVERY_S, 0.0
-    original = resuming.Resumable.steps
+    every, trainer.SAVE_EVERY_S = trainer.SAVE_EVERY_S, 0.0
+    original = trainer.Resumable.steps
 
-    def cut(self: resuming.Resumable, most: int):
+    def cut(self: trainer.Resumable, most: int):
         for done, step in enumerate(original(self, most)):
             if done == steps:
                 return
             yield step
 
-    resuming.Resumable.steps = cut  # type: ignore[method-assign]
+    trainer.Resumable.steps = cut  # type: ignore[method-assign]
     try:
         train_tokenizer(waves(), TINY, recipe, state)
     finally:
-        resuming.Resumable.steps, resuming.SAVE_EVERY_S = original, every
+        trainer.Resumable.steps, trainer.SAVE_EVERY_S = original, every

@@ -3,11 +3,11 @@
 import pytest
 import torch
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.models.body_anchors import NUM_ANCHORS, body_anchors
-from mmweaver.models.body_prior import body_prior
 from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.models.scatterer_network import body_prior
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.scene.procedural.procedural_room import make_room
 from studies.network.ablated_network import (

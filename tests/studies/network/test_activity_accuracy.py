@@ -2,7 +2,7 @@
 
 import torch
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork
 from mmweaver.training.activity_training import ActivityExamples
 from studies.network.activity_accuracy import row_of

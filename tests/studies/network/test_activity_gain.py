@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.datasets.dataset_plan import ACTIVITIES, DatasetPlan
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
 from mmweaver.datasets.generate_rooms import generate_dataset

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from mmweaver.scene.sample_photo import SAMPLE_FOLDER
+from mmweaver.scene.photo_files import SAMPLE_FOLDER
 from studies.network.learned_rooms_picture import METHODS, draw_rooms, views_of
 
 

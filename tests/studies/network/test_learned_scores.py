@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
 from studies.network.learned_scores import cases_of, energy_db, training_mean, true_cube
 from tests.cubes import point_cube

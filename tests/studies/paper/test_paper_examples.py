@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from studies.paper.paper_examples import PaperRoom, paper_rooms, sample_paper_batch
 from studies.paper.paper_method import unit_sqrt_mw
 

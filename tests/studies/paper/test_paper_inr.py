@@ -3,7 +3,7 @@ import pytest
 import torch
 
 from mmweaver.compression.signal_field import finer_grid
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.records import CubeGrid
 from mmweaver.core.seeding import stream
 from studies.paper.paper_inr import (

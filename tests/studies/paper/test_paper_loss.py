@@ -3,7 +3,7 @@
 import pytest
 import torch
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.models.activity_network import ActivityNetwork
 from studies.paper.paper_loss import SHARE_CSSIM, paper_loss, perceived
 from studies.scores.cube_scores import complex_ssim

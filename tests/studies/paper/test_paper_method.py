@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 import torch
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.models.weights import WeightsCard, save_weights
+from mmweaver.scene.photo_files import sample_photo
 from mmweaver.scene.reconstruction import reconstruct
-from mmweaver.scene.sample_photo import sample_photo
 from studies.paper.paper_method import load_paper, paper_field, paper_method, unit_sqrt_mw
 from studies.paper.paper_network import PaperNetwork
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from studies.network.room_cache import RoomCache
 from studies.paper import paper_scores
 from studies.paper.paper_scores import learning_curve, rows_of, scores_of

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 import torch
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.models.activity_network import ActivityNetwork
 from mmweaver.models.weights import WeightsCard, save_weights
 from mmweaver.training.device import ComputeDevice, moved

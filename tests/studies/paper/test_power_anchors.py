@@ -3,7 +3,7 @@
 import pytest
 import torch
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.skeleton import joint
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.scene.procedural.procedural_room import make_room

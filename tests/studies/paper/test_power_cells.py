@@ -3,7 +3,7 @@
 import numpy as np
 import torch
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from studies.paper.power_cells import CellSizes
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import Scene
 from mmweaver.models.frame_motion import FrameMotion

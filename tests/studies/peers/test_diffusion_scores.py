@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.datasets.dataset_store import read_rooms
 from studies.network.learned_scores import Case
 from studies.peers import diffusion_training

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import torch
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.models.weights import WeightsCard, save_weights
 from studies.peers.diffusion_training import RECIPE, load_diffusion
 from studies.peers.signal_diffusion import SignalDiffusion, levels, mixed, sampled

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.core.presets import AWR1843, BGT60
+from mmweaver.core.boards import AWR1843, BGT60
 from mmweaver.core.records import AdcCube
 from studies.physics.echo_gain import chest_level_db, gain_row, moving_level_db
 

@@ -1,6 +1,6 @@
 import pytest
 
-from mmweaver.core.presets import IWR1443_MARS
+from mmweaver.core.boards import IWR1443_MARS
 from mmweaver.propagation.paths import Interaction
 from mmweaver.propagation.ray_traced import Simulator
 from studies.physics.empty_room_cube import empty_room

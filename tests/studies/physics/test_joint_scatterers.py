@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.core.presets import IWR1443_MARS
+from mmweaver.core.boards import IWR1443_MARS
 from mmweaver.core.records import PoseSequence
 from mmweaver.motion.micro_motion import STILL
 from mmweaver.propagation.ray_traced import Simulator

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.boards import AWR1843
 from mmweaver.propagation.ray_traced import Simulator
 from studies.fields.field_signals import sample_scene
 from studies.physics import multi_person_scores

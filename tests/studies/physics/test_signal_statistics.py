@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.core.presets import AWR1843, BGT60
+from mmweaver.core.boards import AWR1843, BGT60
 from mmweaver.core.records import AdcCube
 from mmweaver.core.virtual_array import azimuth_row
 from mmweaver.signal.cube import radar_cube

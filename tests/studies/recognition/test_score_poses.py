@@ -5,8 +5,8 @@ from pathlib import Path
 import torch
 
 from mmweaver.models.pose_network import PoseNetwork
-from mmweaver.recognition.pose_estimator import PoseEstimator
 from mmweaver.recognition.task_file import RecordingSettings
+from mmweaver.recognition.train_pose import PoseEstimator
 from studies.recognition.score_poses import score_poses
 from tests.studies.physics.test_mars_data import write_split
 

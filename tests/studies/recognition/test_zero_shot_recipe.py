@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import IWR1443_RADHAR
 from mmweaver.core.firmware_settings import FIRMWARE
-from mmweaver.core.presets import IWR1443_RADHAR
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.random_scene import Variation
 from studies.recognition.zero_shot_recipe import GenerationRecipe, generate_window

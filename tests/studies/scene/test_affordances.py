@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mmweaver.scene.procedural.arrangement import KINDS
 from mmweaver.scene.procedural.procedural_room import make_room
-from mmweaver.scene.procedural.room_kinds import KINDS
 from studies.manifest import StudyRun
 from studies.scene.affordances import DEVELOP, REPORT, Tally, measure, measure_scene
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.seeding import stream
-from mmweaver.scene.segmentation.segmenter_features import CHANNELS, COLOURS, HEIGHT, MEASURED
+from mmweaver.scene.segmentation.builtin_segmenter import CHANNELS, COLOURS, HEIGHT, MEASURED
 from studies.scene.segmenter_data import SegmenterExample, augmented, make_example, make_examples
 
 

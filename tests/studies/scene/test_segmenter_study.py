@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.scene.sample_photo import sample_photo
+from mmweaver.scene.photo_files import sample_photo
 from mmweaver.scene.segmentation.builtin_segmenter import GROUP_NAMES
 from studies.manifest import StudyRun
 from studies.scene.segmenter_study import REAL_TRUTH, marked_right, measure

@@ -39,7 +39,7 @@ def test_it_learns_and_its_weights_are_restored(example: SegmenterExample, tmp_p
 def test_a_stopped_training_resumes_to_the_same_end(
     example: SegmenterExample, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
-    monkeypatch.setattr("mmweaver.training.resuming.SAVE_EVERY_S", 0.0)
+    monkeypatch.setattr("mmweaver.training.trainer.SAVE_EVERY_S", 0.0)
     recipe = SegmenterRecipe(epochs=3, batch=2)
     _, whole = train([example] * 4, recipe)
 

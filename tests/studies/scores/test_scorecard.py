@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import RadarCube
 from mmweaver.core.seeding import stream
 from studies.scores.scorecard import METRICS, Scorecard, scorecard

@@ -8,8 +8,7 @@ from jaxtyping import Float
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.seeding import stream
 from mmweaver.motion.animation.carry_over import ControlsState, carried_over
-from mmweaver.motion.animation.controls import Controls, blended
-from mmweaver.motion.animation.habits import NO_HABITS, Habits
+from mmweaver.motion.animation.controls import NO_HABITS, Controls, Habits, blended
 from mmweaver.motion.animation.kinematics import solve
 from mmweaver.motion.animation.library.activity_registry import perform
 from mmweaver.motion.animation.root_path import RootPath

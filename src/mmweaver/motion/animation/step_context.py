@@ -10,13 +10,21 @@ from jaxtyping import Float
 from mmweaver.core.registry import Registry
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.animation.arm_reach import reach
-from mmweaver.motion.animation.controls import CHANNELS, LEFT, OUTWARD, RIGHT, Controls, mix_arm
-from mmweaver.motion.animation.habits import Habits
+from mmweaver.motion.animation.controls import CHANNELS, LEFT, OUTWARD, RIGHT, Controls, Habits, mix_arm
 from mmweaver.motion.animation.kinematics import rotated, rotation_y, rotation_z
-from mmweaver.motion.animation.profiles import plateau, rise, wander
+from mmweaver.motion.animation.profiles import (
+    MOVEMENTS,
+    Curve,
+    Number,
+    PerTime,
+    Span,
+    plateau,
+    rise,
+    spline_through,
+    wander,
+)
 from mmweaver.motion.animation.root_path import Move, RootPath
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
-from mmweaver.motion.animation.spans import MOVEMENTS, Curve, Number, PerTime, Span, spline_through
 from mmweaver.motion.animation.standing import STAND_STRETCH, upright
 from mmweaver.motion.language.plan import Step
 

@@ -4,13 +4,12 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 
-from mmweaver.motion.language.alignment import given_words
 from mmweaver.motion.language.described_person import strip_stature
 from mmweaver.motion.language.lexicon import NUMBERS, PRONOUNS, SEATS, TARGETS, TIMES
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, Step
-from mmweaver.motion.language.step_names import add_shown_text, steps_of_each
-from mmweaver.motion.language.token_coverage import not_covered
+from mmweaver.motion.language.postures import add_shown_text, steps_of_each
+from mmweaver.motion.language.token_coverage import given_words, not_covered
 from mmweaver.motion.language.words import word_of
 
 _LOST = re.compile(r"((?:'[^']+'(?: and |, )?)+) (?:is|are) not shown")

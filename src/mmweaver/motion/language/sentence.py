@@ -1,9 +1,13 @@
-"""Parses a sentence into a MotionPlan: every clause becomes a step or an overlay, or an error names the clause."""
+"""Parses a sentence into a MotionPlan: every clause becomes a step or an overlay, or an error names the clause.
+
+Entry point of sentence parsing: text in, MotionPlan out. The parser in use is chosen here only.
+"""
 
 import re
 from copy import deepcopy
 from dataclasses import replace
 from functools import cache
+from typing import Protocol
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY
@@ -29,15 +33,13 @@ from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.places import room_of
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, MotionPlan, Side, Step, Way
 from mmweaver.motion.language.posture_persistence import ARM_POSTURES, persist_postures
-from mmweaver.motion.language.postures import inherit_state, insert_transitions
+from mmweaver.motion.language.postures import add_shown_text, inherit_state, insert_transitions
 from mmweaver.motion.language.repetitions import RepeatedSentence, repetition_of
 from mmweaver.motion.language.rewrite_rules import rewritten
 from mmweaver.motion.language.simultaneous import going_on, sequence_steps
-from mmweaver.motion.language.spelling import correct_spelling
-from mmweaver.motion.language.step_names import add_shown_text
 from mmweaver.motion.language.suggestions import not_known
 from mmweaver.motion.language.verb_steps import AIMED, SIDES
-from mmweaver.motion.language.words import Word, words_of
+from mmweaver.motion.language.words import Word, correct_spelling, words_of
 
 MAX_CHARACTERS = 1000
 MAX_STEPS = 24
@@ -357,3 +359,24 @@ def _needs_no_step(steps: list[Step], parsed: ParsedClause) -> bool:
 
 
 EXAMPLE = "a person walks towards the radar, then waves"
+
+
+class SentenceParser(Protocol):
+    """Interface of a parser of sentences."""
+
+    def __call__(self, text: str, *, in_part: bool = False) -> MotionPlan:
+        """The steps of a sentence in temporal order, not scheduled yet.
+
+        Args:
+            text: The sentence.
+            in_part: Whether clauses that are not understood are recorded as not done, if at least as many are.
+
+        Returns:
+            The plan, with a record of every clause: done, approximated or not done.
+
+        Raises:
+            InputError: If the sentence is not understood; one line states the part, and what is known.
+        """
+
+
+parse_sentence: SentenceParser = parse

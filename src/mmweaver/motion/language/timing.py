@@ -6,8 +6,8 @@ from dataclasses import replace
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.plan import APPROXIMATED, FALLING_ON, NOT_DONE, MotionPlan, Shape, Step
-from mmweaver.motion.language.sentence_parser import parse_sentence
-from mmweaver.motion.language.step_names import PACES, add_shown_text
+from mmweaver.motion.language.postures import PACES, add_shown_text
+from mmweaver.motion.language.sentence import parse_sentence
 
 LONGEST_S = 600.0
 SHORTEST_SHARE = 0.5  # of a movement's minimum time, below which it is not recognizable

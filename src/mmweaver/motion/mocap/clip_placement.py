@@ -14,8 +14,7 @@ from mmweaver.core.skeleton import joint
 from mmweaver.motion.animation.skeleton_proportions import ANKLE_HEIGHT
 from mmweaver.motion.compose import Motion
 from mmweaver.motion.language.plan import MotionPlan
-from mmweaver.motion.mocap.clip import MotionClip
-from mmweaver.motion.mocap.clip_resampling import resampled_clip
+from mmweaver.motion.mocap.clip import MotionClip, resampled_clip
 from mmweaver.motion.planning.floor_map import FloorMap
 
 Array = np.ndarray

@@ -1,6 +1,10 @@
 """From a MotionGPT checkpoint and a sentence to a MotionClip. Start with this file.
 
 text --words--> ids --T5--> motion codes --decoder--> features --mean, std--> joints
+
+Constant bone lengths: the decoder predicts joints independently, so that bones stretch by per cents between frames.
+
+A radar would observe the stretching as motion.
 """
 
 from dataclasses import dataclass
@@ -16,28 +20,61 @@ from mmweaver.core.optional_packages import need
 from mmweaver.core.repository_files import repository_file
 from mmweaver.core.safe_files.array_checks import ArrayChecks
 from mmweaver.core.safe_files.safe_arrays import read_npy
+from mmweaver.core.skeleton import PARENTS
 from mmweaver.motion.mocap.clip import MotionClip
-from mmweaver.motion.mocap.humanml3d import CONTACTS, FPS, NUM_FEATURES, joints_from_features
-from mmweaver.motion.motiongpt.bone_lengths import fix_bone_lengths
+from mmweaver.motion.mocap.joint_arrays import CONTACTS, FPS, NUM_FEATURES, joints_from_features
 from mmweaver.motion.motiongpt.checkpoint import (
     LANGUAGE,
     MEAN,
+    SMALL,
     STD,
     VAE,
     VOCABULARY,
     check_state,
+    looks_like_hub,
     parts_of,
+    published_checkpoint,
     read_checkpoint,
     t5_sizes,
     tokenizer_config,
 )
-from mmweaver.motion.motiongpt.hub import SMALL, looks_like_hub, published_checkpoint
-from mmweaver.motion.motiongpt.language_model import LONGEST_TEXT_TOKENS, add_motion_tokens, build_t5, sample_codes
-from mmweaver.motion.motiongpt.text_tokenizer import WORD_FILES, load_words, unknown_words, wrapped
+from mmweaver.motion.motiongpt.language_model import (
+    LONGEST_TEXT_TOKENS,
+    WORD_FILES,
+    add_motion_tokens,
+    build_t5,
+    load_words,
+    sample_codes,
+    unknown_words,
+    wrapped,
+)
 from mmweaver.motion.motiongpt.tokenizer import MotionTokenizer
 
 if TYPE_CHECKING:
     from transformers import PreTrainedTokenizerBase, T5ForConditionalGeneration
+
+
+def fix_bone_lengths(joints: Float[np.ndarray, "frame 22 3"]) -> Float[np.ndarray, "frame 22 3"]:
+    """Rescales each bone to its median length, with unchanged directions.
+
+    The pelvis keeps its position on the floor, the lower foot its height.
+
+    Args:
+        joints: Joints in metres, z up, (frame, 22, 3).
+
+    Returns:
+        Joints (frame, 22, 3) with constant bone lengths.
+    """
+    steady = joints.copy()
+    for child, parent in enumerate(PARENTS):
+        if parent >= 0:
+            bone = joints[:, child] - joints[:, parent]
+            length = np.linalg.norm(bone, axis=-1, keepdims=True)
+            steady[:, child] = steady[:, parent] + bone * (np.median(length) / np.maximum(length, 1e-9))
+    sunk = steady[..., 2].min(axis=1) - joints[..., 2].min(axis=1)
+    steady[..., 2] -= sunk[:, None]
+    return steady
+
 
 Array = np.ndarray
 SMALL_NAME = "small"

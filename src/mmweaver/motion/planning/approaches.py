@@ -18,8 +18,7 @@ from mmweaver.motion.animation.step_context import PlacedStep
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.planning.body_samples import BodySamples
 from mmweaver.motion.planning.collision import CollisionMap
-from mmweaver.motion.planning.floor_geometry import distance_m, random_choice, unit_vector
-from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.floor_map import FloorMap, distance_m, random_choice, unit_vector
 from mmweaver.motion.planning.seating import (
     Sitting,
     are_reachable,

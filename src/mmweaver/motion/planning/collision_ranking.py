@@ -15,7 +15,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.motion.planning.body_samples import BodySamples
 from mmweaver.motion.planning.collision import CollisionMap
-from mmweaver.motion.planning.floor_geometry import distance_m
+from mmweaver.motion.planning.floor_map import distance_m
 from mmweaver.motion.planning.occluded_geometry import occluded_share, unseen_share
 from mmweaver.motion.planning.placement import Placement
 

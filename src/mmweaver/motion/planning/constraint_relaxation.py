@@ -12,8 +12,8 @@ from typing import Any, TypeVar
 import numpy as np
 from jaxtyping import Float
 
+from mmweaver.core.boards import PRESETS
 from mmweaver.core.errors import InputError, NoRoomError
-from mmweaver.core.presets import PRESETS
 from mmweaver.core.records import Scene
 from mmweaver.motion.language.places import Place
 from mmweaver.motion.language.plan import MotionPlan, Shape, Step, Way

@@ -7,7 +7,7 @@ from mmweaver.motion.animation.library.on_the_floor import BACK_BEHIND_M, BELLY_
 from mmweaver.motion.animation.root_path import Move, Turn
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.plan import Shape, Side, Step, Way
-from mmweaver.motion.planning.floor_geometry import random_sign, unit_vector
+from mmweaver.motion.planning.floor_map import random_sign, unit_vector
 from mmweaver.motion.planning.trajectory import (
     RAMP_S,
     SLOWER_TURNS,

@@ -10,8 +10,7 @@ from mmweaver.core.errors import InputError, NoRoomError
 from mmweaver.core.records import Plane, Scene
 from mmweaver.motion.language.places import Place
 from mmweaver.motion.language.plan import MotionPlan, Step
-from mmweaver.motion.planning.floor_geometry import distance_m, distances_m
-from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.floor_map import FloorMap, distance_m, distances_m
 from mmweaver.motion.planning.targets import SEATS, describe_found, kinds_of
 
 Array = np.ndarray

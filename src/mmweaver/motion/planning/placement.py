@@ -16,8 +16,7 @@ from mmweaver.motion.animation.step_context import PlacedStep
 from mmweaver.motion.language.plan import MotionPlan
 from mmweaver.motion.planning.body_state import BodyState
 from mmweaver.motion.planning.collision import PulledChair
-from mmweaver.motion.planning.floor_geometry import distances_m, random_choice, unit_vector
-from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.floor_map import FloorMap, distances_m, random_choice, unit_vector
 from mmweaver.motion.planning.named_places import cells_of
 from mmweaver.motion.planning.occluded_geometry import occluded_along
 from mmweaver.motion.planning.seating import Sitting, usable_seats

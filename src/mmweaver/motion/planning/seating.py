@@ -10,8 +10,7 @@ from mmweaver.motion.animation.library.sitting import knees_ahead_m, pelvis_behi
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.animation.step_context import STOOL_HEIGHT_M
 from mmweaver.motion.planning.collision import CollisionMap, PulledChair
-from mmweaver.motion.planning.floor_geometry import distance_m, unit_vector
-from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.floor_map import FloorMap, distance_m, unit_vector
 
 Array = np.ndarray
 LOWEST_M, HIGHEST_M = 0.3, 0.65  # height of usable seats

@@ -10,8 +10,14 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import Landmark, Scene
 from mmweaver.motion.language.lexicon import TARGETS
 from mmweaver.motion.language.plan import APPROXIMATED, MotionPlan, Step
-from mmweaver.motion.planning.floor_geometry import bearing_rad, distance_m, distances_m, random_choice, unit_vector
-from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.floor_map import (
+    FloorMap,
+    bearing_rad,
+    distance_m,
+    distances_m,
+    random_choice,
+    unit_vector,
+)
 from mmweaver.motion.planning.trajectory import (
     RAMP_S,
     TURN_OVERHEAD_S,

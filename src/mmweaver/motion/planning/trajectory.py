@@ -5,12 +5,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from jaxtyping import Float
 
-from mmweaver.motion.animation.library.uneven_gait import LUNGES_HZ
+from mmweaver.motion.animation.library.gait import LUNGES_HZ
 from mmweaver.motion.animation.root_path import Move, RootPath, Turn
 from mmweaver.motion.language.plan import HOPPING, Shape, Step, Way
 from mmweaver.motion.planning.collision import PulledChair
-from mmweaver.motion.planning.floor_geometry import random_sign, unit_vector
-from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.floor_map import FloorMap, random_sign, unit_vector
 
 Array = np.ndarray
 SLOWEST_MPS = {

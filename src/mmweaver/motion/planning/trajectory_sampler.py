@@ -27,8 +27,7 @@ from mmweaver.motion.planning.curved_and_lateral_paths import (
     lay_curved_or_lateral,
     turn_by,
 )
-from mmweaver.motion.planning.floor_geometry import bearing_rad, distance_m, distances_m, random_choice
-from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.floor_map import FloorMap, bearing_rad, distance_m, distances_m, random_choice
 from mmweaver.motion.planning.seating import (
     STOOL_HEIGHT_M,
     Sitting,

@@ -9,8 +9,7 @@ from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.records import ClassMask, Plane, RgbdPhoto
 from mmweaver.core.shapes import Array, Points
 from mmweaver.scene.coco_stuff import LANDMARKS, NO_EVIDENCE, SITTABLE
-from mmweaver.scene.layout.connected_components import bounding_slices, label_components
-from mmweaver.scene.layout.height_map import grid_axes, square_index
+from mmweaver.scene.layout.height_map import bounding_slices, grid_axes, label_components, square_index
 from mmweaver.scene.photo.depth_grid import DepthGrid, GridBool
 
 _MIN_PIXELS = 40

@@ -8,9 +8,8 @@ from jaxtyping import Bool, Float, Int
 
 from mmweaver.core.records import Plane
 from mmweaver.core.shapes import Array, Faces, PerFace, Vertices
-from mmweaver.scene.layout.connected_components import bounding_slices, dilated, label_components
-from mmweaver.scene.layout.surface_materials import MATERIAL_NAMES
-from mmweaver.scene.layout.surfaces import AlignedGrid, Surface
+from mmweaver.scene.layout.height_map import bounding_slices, dilated, label_components
+from mmweaver.scene.layout.surfaces import MATERIAL_NAMES, AlignedGrid, Surface
 from mmweaver.scene.photo.depth_grid import GridBool, GridInt, GridVectors, depth_tolerance_m
 
 _MAX_HOLE = 0.04  # share of the grid: larger holes stay open

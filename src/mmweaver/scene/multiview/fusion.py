@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.records import FreeSpace, Landmark, Plane
-from mmweaver.scene.affordances.free_space import MIN_DISTANCE_M
+from mmweaver.scene.affordances.landmarks import MIN_DISTANCE_M
 from mmweaver.scene.layout.surfaces import AlignedGrid
 from mmweaver.scene.multiview.registration import LevelPose
 from mmweaver.scene.single_view import SingleView

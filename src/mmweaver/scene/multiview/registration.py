@@ -14,7 +14,7 @@ from mmweaver.core.shapes import Array, Points, Rotation, Vec3
 from mmweaver.scene.layout.gravity import Gravity
 from mmweaver.scene.layout.height_map import nearest_squares
 from mmweaver.scene.layout.room_layout import room_azimuth_rad
-from mmweaver.scene.photo.posed_photo import PosedPhoto
+from mmweaver.scene.photo.capture_photo import PosedPhoto
 from mmweaver.scene.single_view import SingleView
 
 

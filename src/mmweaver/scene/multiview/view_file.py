@@ -20,8 +20,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_pose import RadarPose
 from mmweaver.core.records import RgbdPhoto
 from mmweaver.core.safe_files.safe_text import read_json
-from mmweaver.scene.photo.capture_photo import CapturedPhoto
-from mmweaver.scene.photo.posed_photo import Pose, PosedPhoto
+from mmweaver.scene.photo.capture_photo import CapturedPhoto, Pose, PosedPhoto
 from mmweaver.scene.read_photo import read_photo
 
 MAX_PHOTOS = 24

@@ -4,6 +4,8 @@ The two are not aligned, and their extrinsics are not recorded. The photo is the
 colour from the colour camera, which a D455 has 59 mm to the side.
 
 Reference: mmwave-capture-std, capture/realsense (facts of the format only).
+
+A further photo of a room and its camera's pose.
 """
 
 from dataclasses import dataclass
@@ -11,18 +13,37 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jaxtyping import UInt8
+from jaxtyping import Float, UInt8
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.optional_packages import need
 from mmweaver.core.pinhole import project, rotated_clockwise, unproject
+from mmweaver.core.radar_pose import RadarPose
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
 from mmweaver.core.safe_files.regular_files import open_regular
 from mmweaver.core.safe_files.safe_text import read_json, read_toml
 from mmweaver.core.shapes import Array, DepthPixels, PerFrame, RgbPixels
-from mmweaver.scene.photo.picture_files import read_rgb
-from mmweaver.scene.photo.posed_photo import PosedPhoto
-from mmweaver.scene.photo.video_frame import read_video_frame
+from mmweaver.scene.photo.picture_files import read_rgb, read_video_frame
+
+Pose = Float[Array, "4 4"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PosedPhoto:
+    """A photo with its camera's pose relative to that of the room's first photo.
+
+    `pose` transforms points of this camera (x right, y down, z forward) into the first camera's, metres. A `RadarPose`
+    is a rough position and yaw in the first camera's level frame, which the photos' own floors and walls refine.
+    """
+
+    photo: RgbdPhoto
+    pose: Pose | RadarPose
+
+    @property
+    def is_rough(self) -> bool:
+        """Whether only position and yaw are known, and those roughly."""
+        return isinstance(self.pose, RadarPose)
+
 
 DEPTH, COLOUR = "depth.zst", "color.avi"
 D455_BASELINE_M = 0.059  # a point at x in the depth camera is at x - baseline in the colour camera

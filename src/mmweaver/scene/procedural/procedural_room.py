@@ -12,18 +12,23 @@ from mmweaver.core.ray_caster import RayCaster
 from mmweaver.core.records import CameraIntrinsics, FreeSpace, Landmark, Plane, RgbdPhoto, Scene, Seat
 from mmweaver.core.seeding import stream
 from mmweaver.core.shapes import Array, DepthPixels, Faces, PerFace, Rotation, Vec3, Vertices
-from mmweaver.scene.layout.surface_materials import MATERIAL_NAMES
+from mmweaver.scene.layout.surfaces import MATERIAL_NAMES
 from mmweaver.scene.photo.camera_file import d455_intrinsics
-from mmweaver.scene.procedural.arrangement import Shell, arrange, sample_shell
-from mmweaver.scene.procedural.depth_noise import measured_depth
+from mmweaver.scene.procedural.arrangement import (
+    KINDS,
+    FurnitureGroup,
+    RoomKind,
+    Shell,
+    arrange,
+    sample_group,
+    sample_shell,
+)
 from mmweaver.scene.procedural.ground_truth import RadarFrame, free_space_of, landmarks_of, planes_of, seats_of
-from mmweaver.scene.procedural.groups import FurnitureGroup, sample_group
 from mmweaver.scene.procedural.lighting import LIGHTINGS
 from mmweaver.scene.procedural.meshing import Mesh, make_room_mesh
 from mmweaver.scene.procedural.palette import Palette, sample_palette
 from mmweaver.scene.procedural.parts import Boxes, PlacedPiece, part_boxes
-from mmweaver.scene.procedural.rendering import CameraView, cast_view, render_classes, render_rgb
-from mmweaver.scene.procedural.room_kinds import KINDS, RoomKind
+from mmweaver.scene.procedural.rendering import CameraView, cast_view, measured_depth, render_classes, render_rgb
 
 MAX_LAYOUTS = 1000
 _OF_SCENE = (  # fields shared with Scene

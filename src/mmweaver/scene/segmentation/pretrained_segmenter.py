@@ -12,7 +12,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import ClassMask
 from mmweaver.core.shapes import Array, ClassPixels, RgbPixels
 from mmweaver.scene.coco_stuff import NAMES, coco_class
-from mmweaver.scene.photo.pretrained import load_pretrained
+from mmweaver.scene.photo.estimated_depth import load_pretrained
 
 UNIVERSAL = {"maskformer", "mask2former", "oneformer"}
 SEMANTIC = {"segformer", "upernet", "beit", "dpt", "data2vec-vision", "mobilevit", "mobilevitv2", "mobilenet_v2"}

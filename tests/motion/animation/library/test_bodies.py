@@ -12,8 +12,8 @@ from mmweaver.motion.compose import compose
 from mmweaver.motion.empty_floor import act_out
 from mmweaver.motion.language.sentence import parse
 from mmweaver.motion.language.timing import plan_motion
+from mmweaver.scene.photo_files import sample_photo
 from mmweaver.scene.reconstruction import reconstruct
-from mmweaver.scene.sample_photo import sample_photo
 
 ANKLES, HEAD, NECK, PELVIS = [joint("left_ankle"), joint("right_ankle")], joint("head"), joint("neck"), 0
 WRISTS = [joint(name) for name in HANDS]

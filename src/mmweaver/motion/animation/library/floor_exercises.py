@@ -11,8 +11,7 @@ from mmweaver.motion.animation.arm_reach import reach
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT
 from mmweaver.motion.animation.kinematics import ankle_from_foot, chest_of
 from mmweaver.motion.animation.library.on_the_floor import KNEELING_M, lying
-from mmweaver.motion.animation.profiles import cap, plateau, raised_cosine, rise
-from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, spline_through
+from mmweaver.motion.animation.profiles import MOVEMENTS, PerTime, cap, plateau, raised_cosine, rise, spline_through
 from mmweaver.motion.animation.standing import ANKLE_BEHIND, STAND_STRETCH
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 

@@ -6,8 +6,17 @@ Each changes the controls of the underlying posture; the legs are kept.
 import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT
-from mmweaver.motion.animation.profiles import larger, raised_cosine, reached, rise, travel
-from mmweaver.motion.animation.spans import PerTime, Span, spline_through, sum_plateaus
+from mmweaver.motion.animation.profiles import (
+    PerTime,
+    Span,
+    larger,
+    raised_cosine,
+    reached,
+    rise,
+    spline_through,
+    sum_plateaus,
+    travel,
+)
 from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture
 
 

@@ -3,8 +3,7 @@
 import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT
-from mmweaver.motion.animation.profiles import bump, plateau, raised_cosine, rise
-from mmweaver.motion.animation.spans import PerTime, Span, sum_plateaus
+from mmweaver.motion.animation.profiles import PerTime, Span, bump, plateau, raised_cosine, rise, sum_plateaus
 from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture
 
 

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mmweaver.motion.animation.controls import OUTWARD
-from mmweaver.motion.animation.profiles import plateau, rise, through, travel
-from mmweaver.motion.animation.spans import PerTime, sum_plateaus
+from mmweaver.motion.animation.profiles import PerTime, plateau, rise, sum_plateaus, through, travel
 from mmweaver.motion.animation.standing import STAND_STRETCH, home_feet
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 

@@ -7,8 +7,7 @@ squats and front lunges after inspection of its first subject (studies/motion/ma
 import numpy as np
 
 from mmweaver.motion.animation.controls import OUTWARD, RIGHT
-from mmweaver.motion.animation.profiles import bump, reached, rise
-from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, Span, sum_plateaus
+from mmweaver.motion.animation.profiles import MOVEMENTS, PerTime, Span, bump, reached, rise, sum_plateaus
 from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture, posture
 
 

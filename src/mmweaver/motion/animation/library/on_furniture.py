@@ -7,8 +7,7 @@ import numpy as np
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT, blend
 from mmweaver.motion.animation.library.on_the_floor import BACK_BEHIND_M, lie_down_on_side, roll
 from mmweaver.motion.animation.library.sitting import sitting
-from mmweaver.motion.animation.profiles import bump, rise
-from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, spline_through
+from mmweaver.motion.animation.profiles import MOVEMENTS, PerTime, bump, rise, spline_through
 from mmweaver.motion.animation.standing import ANKLE_BEHIND, HALF_STANCE
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 

@@ -7,8 +7,7 @@ stays where the feet stood; on the back the body lies behind it, on the belly ah
 import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT
-from mmweaver.motion.animation.profiles import bump, rise
-from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, spline_through, sum_plateaus
+from mmweaver.motion.animation.profiles import MOVEMENTS, PerTime, bump, rise, spline_through, sum_plateaus
 from mmweaver.motion.animation.standing import STAND_STRETCH
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 

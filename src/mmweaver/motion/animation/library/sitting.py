@@ -3,9 +3,8 @@
 import numpy as np
 
 from mmweaver.motion.animation.arm_reach import reach
-from mmweaver.motion.animation.profiles import rise, wide_bump
+from mmweaver.motion.animation.profiles import PerTime, rise, wide_bump
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
-from mmweaver.motion.animation.spans import PerTime
 from mmweaver.motion.animation.standing import ANKLE_BEHIND, ARM_HANGING, STAND_STRETCH
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT
-from mmweaver.motion.animation.profiles import plateau
-from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, Span, spline_through, sum_plateaus
+from mmweaver.motion.animation.profiles import MOVEMENTS, PerTime, Span, plateau, spline_through, sum_plateaus
 from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture
 
 BEGINS, THERE, BACK = 0.18, 0.52, 0.98  # shares of a punch: leaves the guard, hits, returns to the guard

@@ -4,8 +4,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.motion.animation.controls import OUTWARD, RIGHT
-from mmweaver.motion.animation.profiles import bump, plateau, raised_cosine
-from mmweaver.motion.animation.spans import PerTime, Span
+from mmweaver.motion.animation.profiles import PerTime, Span, bump, plateau, raised_cosine
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 
 _BEYOND_S = 10.0  # longer than coming up takes
