@@ -8,10 +8,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-NAMES = (
-    "pelvis left_hip right_hip spine1 left_knee right_knee spine2 left_ankle right_ankle spine3 left_foot right_foot"
-    " neck left_collar right_collar head left_shoulder right_shoulder left_elbow right_elbow left_wrist right_wrist"
-).split()
+NAMES = tuple(
+    """
+    pelvis left_hip right_hip spine1 left_knee right_knee spine2 left_ankle right_ankle spine3 left_foot right_foot neck
+    left_collar right_collar head left_shoulder right_shoulder left_elbow right_elbow left_wrist right_wrist
+    """.split()  # noqa: SIM905
+)
 SMOOTH_S = 0.25  # longer than the sway of one step
 
 
@@ -141,10 +143,7 @@ def facing_deg(take: Take, what: str) -> float:
     edge = max(2, int(0.3 * take.rate_hz))
     heading, spot = float(np.median(take.heading_rad[-edge:])), take.joint("pelvis")[-edge:, :2].mean(axis=0)
     ways = {"left": np.pi, "right": 0.0, "away": np.arctan2(spot[1], spot[0]), "radar": np.arctan2(-spot[1], -spot[0])}
-    if what in ways:
-        aims = [ways[what]]
-    else:
-        aims = [np.arctan2(y - spot[1], x - spot[0]) for x, y in take.things_m[what]]
+    aims = [ways[what]] if what in ways else [np.arctan2(y - spot[1], x - spot[0]) for x, y in take.things_m[what]]
     return float(min(abs(np.degrees((aim - heading + np.pi) % (2 * np.pi) - np.pi)) for aim in aims))
 
 
@@ -260,7 +259,14 @@ def higher_foot(take: Take) -> float:
 
 def still_m(take: Take) -> float:
     """How far a foot moves over the floor."""
-    return float(max(np.hypot(*(take.smooth(take.joint(f"{side}_ankle")[:, :2], 0.1) - take.joint(f"{side}_ankle")[0, :2]).T).max() for side in SIDES))
+    return float(
+        max(
+            np.hypot(
+                *(take.smooth(take.joint(f"{side}_ankle")[:, :2], 0.1) - take.joint(f"{side}_ankle")[0, :2]).T
+            ).max()
+            for side in SIDES
+        )
+    )
 
 
 def leans_back(take: Take) -> float:

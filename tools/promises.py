@@ -1,7 +1,7 @@
 """How many promises of sentences the joints keep: python tools/promises.py [--rooms demo,corridor,...] [--seeds 3]
 
-Every sentence of promises.toml is acted out in every room with every seed, as `mmweaver generate` would, and measured on
-its joints by joint_measures.py, which shares no code with the generator. A run is
+Every sentence of promises.toml is acted out in every room with every seed, as `mmweaver generate` would, and measured
+on its joints by joint_measures.py, which shares no code with the generator. A run is
 
     kept       every measure is within its tolerance
     reported   one is not, and the record of the sentence reports a deviation or the sentence is refused
@@ -20,10 +20,18 @@ import joint_measures
 import numpy as np
 
 from mmweaver import InputError, Weaver
-from mmweaver.weaver.front_door import compose_request
+from mmweaver.weaver.composition import widened
 
 HERE = Path(__file__).parent
-TOLERANCES = {"_mps": (0.15, 0.0), "_spm": (0.15, 0.0), "_m": (0.10, 0.10), "_deg": (0.0, 10.0), "_s": (0.10, 0.10)}
+TOLERANCES = {  # share, and at least; the closing step may count, and a fall has no exact direction
+    "steps": (0.0, 1.0),
+    "fall_deg": (0.0, 30.0),
+    "_mps": (0.15, 0.0),
+    "_spm": (0.15, 0.0),
+    "_m": (0.10, 0.10),
+    "_deg": (0.0, 10.0),
+    "_s": (0.10, 0.10),
+}
 WIDTH_M, LENGTH_M, HEIGHT_M, CAMERA_M = 1.5, 3.0, 2.5, 1.1  # of the bare corridor, seen from its end
 SEAT_WORDS = ("chair", "couch", "seat")
 
@@ -94,16 +102,13 @@ def outcome(text: str, checks: list[list[Any]], room: Any, weaver: Weaver, seed:
     """What came of one sentence in one room with one seed."""
     began = time.process_time()
     try:
-        request = weaver.request(text, seed=seed)
-        (motion,) = compose_request(request, room.scene)
+        request, (motion,) = widened(weaver.request(text, seed=seed), room.scene)
     except InputError as error:
         return {"outcome": "reported", "why": f"refused: {error}", "cpu_s": time.process_time() - began}
     cpu_s = time.process_time() - began
     scene = getattr(motion, "scene", None) or room.scene
     inside = (motion.pose.time_s >= 0) & (motion.pose.time_s <= request.duration_s + 1e-9)
-    take = joint_measures.Take(
-        motion.pose.time_s[inside], motion.pose.joints_m[inside], scene.floor_z_m, things(scene)
-    )
+    take = joint_measures.Take(motion.pose.time_s[inside], motion.pose.joints_m[inside], scene.floor_z_m, things(scene))
     values = measured(take, checks)
     is_kept = all(within(name.split()[0], value, wanted) for name, value, wanted in values)
     statuses = [clause.status for clause in motion.clauses]

@@ -21,6 +21,7 @@ from mmweaver.motion.language.timing import natural_s, repeated, schedule
 from mmweaver.motion.mocap.clip import MotionClip, check_lasts
 from mmweaver.motion.multi_person import MOST_PEOPLE
 from mmweaver.motion.people import check_subject
+from mmweaver.motion.planning.missing import STAND_IN
 from mmweaver.motion.planning.targets import SHORTEST_PATH_M
 from mmweaver.motion.register_activity import load_activity_plugins
 from mmweaver.weaver.request import Request
@@ -58,6 +59,8 @@ class ParsedRequest:
     keep_adc: bool = False
     board: Board | None = None  # None: a typical one of this seed, or that of a background recording
     radar_poses: tuple[RadarPose, ...] = ()  # none: one radar at the camera
+    missing: str = STAND_IN  # what is done about things that the room lacks
+    strict: bool = False  # whether what is not done is refused
 
     @property
     def duration_s(self) -> float:
@@ -170,6 +173,8 @@ def parse(asked: Request, radar: RadarConfig, *, needs_adc: bool = False) -> Par
         keep_adc=asked.keep_adc,
         board=None if asked.board is None else find_board(asked.board, config, asked.seed),
         radar_poses=tuple(asked.radar_poses),
+        missing=asked.missing,
+        strict=asked.strict,
     )
 
 
