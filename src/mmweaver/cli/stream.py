@@ -68,6 +68,8 @@ def run_stream(asked: "Options", out: Path) -> int:
         board=asked.board_name(),
         chunk_frames=PART_FRAMES if limit is None else min(PART_FRAMES, limit),
         heading_rad=asked.heading_rad,
+        missing=asked.missing,
+        strict=asked.strict,
         **person,
     )
     try:

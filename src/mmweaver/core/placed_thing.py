@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -33,9 +34,9 @@ class PlacedThing:
         return cls(kind.strip().lower(), (x_m, y_m), facing[0] if facing else None)
 
     @classmethod
-    def of(cls, given: "PlacedThing | tuple[object, ...]") -> "PlacedThing":
+    def of(cls, given: "PlacedThing | tuple[Any, ...]") -> "PlacedThing":
         """The thing itself, or that of a tuple (kind, (x, y)) or (kind, (x, y), facing in degrees)."""
-        return given if isinstance(given, PlacedThing) else cls(*given)  # type: ignore[arg-type]
+        return given if isinstance(given, PlacedThing) else cls(*given)
 
     @property
     def words(self) -> str:

@@ -10,21 +10,17 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.range_window import with_range
 from mmweaver.core.records import Scene
 from mmweaver.motion.compose import Motion
-from mmweaver.motion.language.plan import DONE
 from mmweaver.motion.mocap.clip_placement import place_clip
 from mmweaver.motion.multi_person import compose_people
 from mmweaver.motion.people import subject_of
 from mmweaver.motion.planning.missing import FURNISH, missing_things
+from mmweaver.motion.verification.verify import check_done
 from mmweaver.weaver.generation import Room
 from mmweaver.weaver.parsed_request import ParsedRequest
 
 NEAREST_M, FARTHEST_M, MARGIN_M = 0.3, 12.0, 0.3  # of widened windows: limits, and beyond the body
 GAIN = 0.05  # less loss than this is not worth another window
 LOST_BY_ERROR = 10.0
-
-
-class NotDoneError(InputError):
-    """A sentence of which something is not done, with `strict`."""
 
 
 def compose_request(request: ParsedRequest, scene: Scene) -> tuple[Motion, ...]:
@@ -71,25 +67,9 @@ def compose_request(request: ParsedRequest, scene: Scene) -> tuple[Motion, ...]:
         farthest_m=request.config.farthest_bin_m,
         missing=request.missing,
     )
-    if request.strict:
-        check_done(people)
+    for person in people if request.strict else ():
+        check_done(person.plan.text, person.clauses)
     return people
-
-
-def check_done(people: Sequence[Motion]) -> None:
-    """Checks that every clause is done.
-
-    Args:
-        people: Motions.
-
-    Raises:
-        NotDoneError: With what is shown instead.
-    """
-    for person in people:
-        others = [clause.sentence for clause in person.clauses if clause.status != DONE]
-        if others:
-            raise NotDoneError(f"not everything is done as {person.plan.text!r} says: {'; '.join(others)}; leave out"
-                               " --strict to have it so, word it otherwise, or take another place or room")  # fmt: skip
 
 
 def lost_of(people: Sequence[Motion]) -> float:

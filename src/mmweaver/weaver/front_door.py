@@ -262,6 +262,8 @@ class Weaver(RoomReader):
             farthest_m=request.config.farthest_bin_m,
             height_m=person.height_m,
             subject=person.subject,
+            missing=request.missing,
+            strict=request.strict,
         )
         return Streamer(self, room, request, motion, chunk_frames).chunks(sentences)
 

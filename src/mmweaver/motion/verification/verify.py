@@ -3,12 +3,17 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, Step
 from mmweaver.motion.planning.asked import Deviation, quantities
 from mmweaver.motion.verification.facts import Facts, Measurement
 
 LOST = 0.75  # share of what is asked beyond which it is not done at all
+
+
+class NotDoneError(InputError):
+    """A sentence of which something is not done, if that is refused."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,3 +76,21 @@ def outcome_line(clauses: Sequence[ClauseRecord]) -> str:
     if not others:
         return f"motion: all {done} clauses done as measured" if done > 1 else "motion: done as measured"
     return f"motion: {done} of {len(clauses)} clauses done; " + "; ".join(others)
+
+
+def check_done(text: str, clauses: Sequence[ClauseRecord]) -> None:
+    """Checks that every clause of a sentence is done.
+
+    Args:
+        text: The sentence.
+        clauses: Verified records of its clauses.
+
+    Raises:
+        NotDoneError: With what is shown instead.
+    """
+    others = [clause.sentence for clause in clauses if clause.status != DONE]
+    if others:
+        raise NotDoneError(
+            f"not everything is done as {text!r} says: {'; '.join(others)}; word it otherwise, take another place or"
+            " room, or leave out --strict"
+        )
