@@ -75,7 +75,7 @@ def compose_request(request: ParsedRequest, scene: Scene) -> tuple[Motion, ...]:
 def lost_of(people: Sequence[Motion]) -> float:
     """How much the joints of all people lose of what their sentences ask for."""
     steps = [step for person in people for step in person.verified]
-    return sum(0.1 + deviation.lost for step in steps for deviation in step.deviations)
+    return float(sum(0.1 + deviation.lost for step in steps for deviation in step.deviations))
 
 
 def widened(request: ParsedRequest, scene: Scene) -> tuple[ParsedRequest, tuple[Motion, ...]]:
