@@ -69,6 +69,7 @@ def run_stream(asked: "Options", out: Path) -> int:
         chunk_frames=PART_FRAMES if limit is None else min(PART_FRAMES, limit),
         heading_rad=asked.heading_rad,
         missing=asked.missing,
+        parser=asked.parser,
         strict=asked.strict,
         **person,
     )

@@ -252,7 +252,8 @@ class Weaver(RoomReader):
             InputError: For a request that cannot be met.
         """
         check_streams(self.method, self.method_name)
-        request = self.request("a person stands", frames=1, **asked)
+        parser = asked.pop("parser", None)  # of the sentences to come
+        request = replace(self.request("a person stands", frames=1, **asked), parser=parser)
         (person,) = request.people
         motion = ContinuousMotion(
             room.scene,

@@ -101,6 +101,13 @@ class Request:
         default="stand-in",
         rare=True,
     )
+    parser: str | None = option(
+        "who reads the text instead of the built-in grammar: a language model of yours at an OpenAI-compatible URL"
+        " (http://localhost:8000/v1#NAME), in a folder for transformers, or a plug-in module:attribute; what it returns"
+        " is checked and cached (docs/motion.md)",
+        "URL|DIR|PLUGIN",
+        rare=True,
+    )
     strict: bool = option(
         "refuse a text of which something is not done as it says, measured on the joints; otherwise it is reported",
         default=False,

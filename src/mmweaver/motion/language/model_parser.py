@@ -14,11 +14,13 @@ import urllib.request
 from collections.abc import Callable
 from dataclasses import dataclass
 from http.client import HTTPException
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.motion.language.activities import BODY, HANDS
 from mmweaver.motion.language.described_person import described_person
 from mmweaver.motion.language.lexicon import FILLERS, NUMBERS, RADAR, SEATS, TARGETS
@@ -92,6 +94,7 @@ class ModelParser:
         reply: Returns the model's answer to a list of messages.
         name: Name of the model, recorded with every plan.
         digest: Hash or fingerprint of the model, if known.
+        source: Where the model is, if its name alone does not tell: answers are cached by it.
         cache: Folder of answers; None keeps none.
         tries: Number of answers that may be asked for.
     """
@@ -99,6 +102,7 @@ class ModelParser:
     reply: Reply
     name: str
     digest: str = "unknown"
+    source: str = ""
     cache: Path | None = None
     tries: int = TRIES
 
@@ -146,25 +150,25 @@ class ModelParser:
         )
 
     def _file(self, text: str) -> Path | None:
-        key = json.dumps([SCHEMA_VERSION, self.name, self.digest, schema(), text], sort_keys=True)
+        key = json.dumps([SCHEMA_VERSION, self.source or self.name, schema(), text], sort_keys=True)
         return None if self.cache is None else self.cache / f"{hashlib.sha256(key.encode()).hexdigest()}.json"
 
     def _cached(self, text: str) -> dict[str, Any] | None:
         file = self._file(text)
         try:
-            found = None if file is None else _json(file.read_text(encoding="utf-8"))
-            if found is not None:
-                checked(found, text)
-            return found
-        except (OSError, UnicodeDecodeError, InvalidAnswer):
+            found = {} if file is None else _json(file.read_text(encoding="utf-8"))
+            answer = checked(found["answer"], text)
+        except (OSError, UnicodeDecodeError, KeyError, AttributeError, InvalidAnswer):
             return None
+        self.digest = str(found.get("digest", "unknown"))[:80]
+        return answer
 
     def _store(self, text: str, answer: dict[str, Any]) -> None:
         file = self._file(text)
         if file is not None:
             file.parent.mkdir(parents=True, exist_ok=True)
             partial = file.with_suffix(f".{os.getpid()}.part")
-            partial.write_text(json.dumps(answer), encoding="utf-8")
+            partial.write_text(json.dumps({"answer": answer, "digest": self.digest}), encoding="utf-8")
             partial.replace(file)
 
 
@@ -207,8 +211,56 @@ def url_parser(
             why = str(error)[:120] or type(error).__name__
             raise InputError(f"the language model at {base} gave no answer: {why}") from None
 
-    parser = ModelParser(reply=reply, name=model, cache=cache)
+    parser = ModelParser(reply=reply, name=model, source=f"{base}#{model}", cache=cache)
     return parser
+
+
+def named_parser(name: str) -> ModelParser:
+    """The parser of `--parser`: a URL, the folder of a `transformers` model, or a plug-in module:attribute.
+
+    Args:
+        name: As given; the attribute of a plug-in is a function from messages to the model's answer.
+
+    Raises:
+        InputError: If it is none of them.
+    """
+    if "://" in name:
+        return url_parser(name, cache=cache_folder())
+    if Path(name).is_dir():
+        return _local_parser(Path(name))
+    module, colon, attribute = name.partition(":")
+    try:
+        reply = getattr(import_module(module), attribute) if colon else None
+    except (ImportError, AttributeError, ValueError) as error:
+        raise InputError(f"--parser {name[:60]!r} cannot be imported: {error}") from None
+    if not callable(reply):
+        raise InputError(f"--parser {name[:60]!r} is no URL, no folder of a model, and no module:attribute")
+    return ModelParser(reply=reply, name=name)
+
+
+def cache_folder() -> Path:
+    """Where answers are kept: the user's cache."""
+    base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA") or Path.home() / ".cache"
+    return Path(base) / "mmweaver" / "parser"
+
+
+def _local_parser(folder: Path) -> ModelParser:
+    need("pretrained", "--parser with the folder of a model", "transformers")
+    import transformers
+
+    chat = transformers.pipeline("text-generation", model=str(folder), trust_remote_code=False)
+
+    def reply(messages: list[dict[str, str]]) -> str:
+        form = {"role": "system", "content": f"The JSON schema of the answer: {json.dumps(schema())}"}
+        made = chat([form, *messages], max_new_tokens=2048, do_sample=False, return_full_text=False)
+        return str(made[0]["generated_text"])
+
+    weights = hashlib.sha256()
+    for file in sorted(folder.glob("*.safetensors")):
+        weights.update(file.read_bytes())
+    return ModelParser(
+        reply=reply, name=folder.name, digest=weights.hexdigest()[:16], source=weights.hexdigest(), cache=cache_folder()
+    )
 
 
 class _NoRedirects(urllib.request.HTTPRedirectHandler):
