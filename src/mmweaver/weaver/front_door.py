@@ -19,14 +19,13 @@ from mmweaver.core.boards import IDEAL_BOARD, PRESETS, compensated
 from mmweaver.core.constants import __version__
 from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareSettings
-from mmweaver.core.options import Place, keywords_of
+from mmweaver.core.options import keywords_of
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import AT_CAMERA
-from mmweaver.core.records import Breathing, PoseSequence, Scene
-from mmweaver.core.seeding import single_precision, stream
+from mmweaver.core.records import PoseSequence, Scene
+from mmweaver.core.seeding import single_precision
 from mmweaver.core.skeleton import joint
 from mmweaver.core.stages import Stages
-from mmweaver.core.targets import Thing
 from mmweaver.evaluation.background_board import BackgroundBoard
 from mmweaver.io.radar_file import load_firmware, load_radar
 from mmweaver.io.result_folder import META_VERSION, file_digest
@@ -36,19 +35,17 @@ from mmweaver.motion.animation.root_path import resample
 from mmweaver.motion.compose import Motion
 from mmweaver.motion.continuous import ContinuousMotion
 from mmweaver.motion.mocap.clip import MotionClip
-from mmweaver.motion.mocap.clip_placement import place_clip
 from mmweaver.motion.mocap.read_motion import read_motion
-from mmweaver.motion.multi_person import compose_people
-from mmweaver.motion.people import subject_of
-from mmweaver.motion.physiology import held_breaths, living
+from mmweaver.motion.physiology import living
 from mmweaver.motion.planning.placement import Conditions
 from mmweaver.propagation.rays import Rays
 from mmweaver.propagation.static_paths import ALL_PATHS
 from mmweaver.propagation.things import ThingPaths
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from, unseen_notes
 from mmweaver.signal.detection import check_points, detect, needs_adc
+from mmweaver.weaver.composition import compose_request, furnished_room, widened, with_targets
 from mmweaver.weaver.generation import Generation, Room
-from mmweaver.weaver.parsed_request import ParsedRequest, PersonRequest, parse
+from mmweaver.weaver.parsed_request import ParsedRequest, parse
 from mmweaver.weaver.request import Request
 from mmweaver.weaver.room_reader import RoomReader
 from mmweaver.weaver.streaming import (
@@ -107,6 +104,7 @@ class Weaver(RoomReader):
         is_named = not isinstance(radar, RadarConfig)
         self.calibration = read_ti_calibration(str(radar)) if calibration is None and is_named else calibration
         super().__init__(listener)
+        self.widens = False  # whether a sentence that lacks floor gets a wider range window
         self._background_board = BackgroundBoard()
         check_points(points, self.radar)
         self.points = points
@@ -260,7 +258,8 @@ class Weaver(RoomReader):
             InputError: For a request that cannot be met.
         """
         check_streams(self.method, self.method_name)
-        request = self.request("a person stands", frames=1, **asked)
+        parser = asked.pop("parser", None)  # of the sentences to come
+        request = replace(self.request("a person stands", frames=1, **asked), parser=parser)
         (person,) = request.people
         motion = ContinuousMotion(
             room.scene,
@@ -270,6 +269,8 @@ class Weaver(RoomReader):
             farthest_m=request.config.farthest_bin_m,
             height_m=person.height_m,
             subject=person.subject,
+            missing=request.missing,
+            strict=request.strict,
         )
         return Streamer(self, room, request, motion, chunk_frames).chunks(sentences)
 
@@ -288,12 +289,17 @@ class Weaver(RoomReader):
         poses = request.radar_poses or (AT_CAMERA,)
         if room.background is not None and len(poses) > 1:
             raise InputError("a background recording is of one radar; give one radar pose, that of the recording")
-        room = with_targets(room, request)
-        scenes = [scene_seen_from(room.scene, pose) for pose in poses]
         stages = Stages(self._listener)
         stages.seconds.update(room.seconds)
         with stages("compose the motion"):
-            people = compose_request(request, room.scene) if people is None else people
+            if people is None:
+                room = furnished_room(request, room)
+                may_widen = self.widens and room.background is None and request.motion is None
+                request, people = (
+                    widened(request, room.scene) if may_widen else (request, compose_request(request, room.scene))
+                )
+        room = with_targets(room, request)
+        scenes = [scene_seen_from(room.scene, pose) for pose in poses]
         results = [self._recorded(request, replace(room, scene=scene), people, stages) for scene in scenes]
         return replace(results[0], further=tuple(results[1:]))
 
@@ -433,106 +439,6 @@ class Weaver(RoomReader):
             "assumed": _assumed(room.scene, people, (*signal.assumptions, *request.config.notes)),
             **_people_meta(poses, people),
         }
-
-
-def with_targets(room: Room, request: ParsedRequest) -> Room:
-    """The room with the things and reflectors of a request, each thing at its place or at a free one.
-
-    Args:
-        room: The room in the camera's coordinates.
-        request: The parsed request.
-
-    Raises:
-        InputError: For reflectors in front of a background recording, which does not hold them.
-    """
-    if not request.things and not request.reflectors and not request.interferers:
-        return room
-    if request.reflectors and room.background is not None:
-        raise InputError("a background recording has its own echoes; leave out --reflector or --background")
-    things: list[Thing] = []
-    for number, thing in enumerate(request.things):
-        seed = int(stream(request.seed, "thing", number).integers(2**31))
-        taken = [one.place_m for one in (*things, *request.things) if one.place_m is not None]
-        place = thing.place_m or free_place(room.scene, request.range_window_m, seed, taken)
-        things.append(replace(thing, place_m=place, seed=seed))
-    targets = {"things": tuple(things), "reflectors": request.reflectors, "interferers": request.interferers}
-    return replace(room, scene=replace(room.scene, **targets))
-
-
-def free_place(
-    scene: Scene, range_window_m: tuple[float, float], seed: int, taken: Sequence[Place] = ()
-) -> tuple[float, float]:
-    """A free place on the floor in the radar's view, for a thing.
-
-    Args:
-        scene: The room in the camera's coordinates.
-        range_window_m: Nearest and farthest range that the radar keeps.
-        seed: Seed of the place.
-        taken: Places (x, y) to keep 0.8 m away from where there is room.
-    """
-    space, rng = scene.free_space, stream(seed, "thing place")
-    x, y = np.meshgrid(space.x_m, space.y_m)
-    distance = np.hypot(x, y)
-    good = space.is_free & (distance > max(range_window_m[0], 1.0)) & (distance < min(range_window_m[1], 5.0))
-    good &= np.abs(np.arctan2(x, y)) < np.radians(40)
-    apart = good & np.all([np.hypot(x - one[0], y - one[1]) > 0.8 for one in taken] or [good], axis=0)
-    cells = np.argwhere(apart if apart.any() else good)
-    if not len(cells):  # a room without free floor: beyond the person's usual place
-        return 0.6, float(np.clip(2.5, *range_window_m))
-    row, column = cells[rng.integers(len(cells))]
-    return float(space.x_m[column]), float(space.y_m[row])
-
-
-def compose_request(request: ParsedRequest, scene: Scene) -> tuple[Motion, ...]:
-    """Composes the motion of each person; a recorded motion replaces that of the first.
-
-    Args:
-        request: The parsed request.
-        scene: The room in the camera's coordinates.
-
-    Returns:
-        One motion per person, without collisions with the room and each other.
-
-    Raises:
-        InputError: If the room has no space for the motion.
-    """
-    recorded = None
-    if not request.people:
-        return ()
-    first = request.people[0]
-    if request.motion is not None:
-        clip = request.motion if first.height_m is None else request.motion.scaled_to(first.height_m)
-        recorded = place_clip(
-            clip,
-            scene,
-            duration_s=request.duration_s,
-            seed=request.seed,
-            range_window_m=request.range_window_m,
-            start_m=first.start_m,
-            heading_rad=request.heading_rad,
-            as_recorded=request.as_recorded,
-        )
-        who = subject_of(request.seed) if first.subject is None else first.subject
-        recorded = replace(recorded, pose=replace(recorded.pose, subject=who))
-    composed = compose_people(
-        [person.plan for person in request.people],
-        scene,
-        seed=request.seed,
-        range_window_m=request.range_window_m,
-        starts_m=[person.start_m for person in request.people],
-        heights_m=[person.height_m for person in request.people],
-        subjects=[person.subject for person in request.people],
-        first=recorded,
-        heading_rad=request.heading_rad,
-        farthest_m=request.config.farthest_bin_m,
-    )
-    return tuple(_breathing(*pair) for pair in zip(composed, request.people, strict=True))
-
-
-def _breathing(motion: Motion, person: PersonRequest) -> Motion:
-    """The motion with the breathing that the text asks for."""
-    asked = Breathing(per_minute=person.breaths_per_minute, held_s=held_breaths(motion.plan.steps))
-    return motion if asked == Breathing() else replace(motion, pose=replace(motion.pose, breathing=asked))
 
 
 def _found(weights: str | Path, revision: str | None = None) -> Path:
