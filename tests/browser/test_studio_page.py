@@ -11,7 +11,7 @@ from PIL import Image
 
 from mmweaver.io.dca1000 import write_bin
 from tests import captures
-from tests.browser.chromium import IDLE, Running
+from tests.browser.chromium import IDLE, READY, Running
 from tests.scene.scanned_mesh.test_mesh_photo import Y_UP, furnished
 
 SAMPLE = Path(__file__).resolve().parents[2] / "src" / "mmweaver" / "sample"

@@ -322,8 +322,8 @@ class Simulator:
             seed: Seed of the signal.
         """
         bodies = [body_of(one) for one in poses]
-        micro_motions = [MicroMotion(one.subject, seed, MicroMotionSettings()) for one in poses]
-        return self._people(poses, bodies, micro_motions, np.array([frame])).scene(1)
+        living = [Physiology.of(one, seed) for one in poses]
+        return self._people(poses, bodies, living, np.array([frame])).scene(1)
 
     def _people(
         self,
