@@ -170,12 +170,12 @@ export class Studio {
       if (this.socket !== socket) return;
       const share = (performance.now() - begun) / lasts, frame = first + Math.min(Math.floor(share * chunk.frames), chunk.frames - 1);
       if (frame !== at) { at = frame; this.player.seek(frame); }
-      if (share < 1) { requestAnimationFrame(step); return; }
+      if (share < 1) { setTimeout(step, Math.max(4, ((frame - first + 1) / chunk.frames) * lasts - (performance.now() - begun))); return; }
       this.waiting.shift();
       if (socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify({ ack: chunk.header.live.first_frame }));
       this.showChunk(job, socket);
     };
-    requestAnimationFrame(step);
+    step();
   }
 
   // what is shown ---------------------------------------------------------------------------------------------------
