@@ -47,6 +47,7 @@ fuzz: $(STAMP)  ## damaged files for every reader, for SECONDS; docs/security.md
 
 COUNT ?= 100
 mutants: $(STAMP)  ## breaks COUNT sampled lines one at a time: what do the tests notice? results/mutants.json; an hour or two
+	$(BIN)/python -m tools.mutants.promises
 	$(BIN)/python -m tools.mutants --seed $(SEED) --count $(COUNT)
 
 bench: $(STAMP)
@@ -63,7 +64,7 @@ bench: $(STAMP)
 	$(BIN)/python benchmarks/checksums.py
 
 faults: $(STAMP)  ## kills, full disks and failed writes at every event of every command that writes; an hour or more
-	$(BIN)/python -m studies run injected_faults
+	$(BIN)/python -m pytest -n 0 -m 'slow or not slow' tests/faults
 
 studio:  ## builds the page's bundle from web/; needs Node, and only who changes the page needs it
 	cd web && npm ci --no-audit --no-fund --ignore-scripts && npm run check && npm run build

@@ -107,20 +107,3 @@ def plan_dataset(plan: Mapping[str, Any]) -> dict[str, Any]:
     text = json.dumps(plan, sort_keys=True)
     return {"name": "data set of mmweaver dataset", "sha256": hashlib.sha256(text.encode()).hexdigest(),
             "hashed": "its plan, as JSON with sorted keys"}  # fmt: skip
-
-
-def kept_rows(path: Path, measured: list[str]) -> list[dict[str, Any]]:
-    """Rows of an earlier run of signals that were not measured again."""
-    if not path.is_file():
-        return []
-    record = json.loads(path.read_text(encoding="utf-8"))
-    return [
-        {"commit": record["provenance"]["commit"], **row}
-        for row in record["rows"]
-        if row["dataset"]["name"] not in measured
-    ]
-
-
-def in_order(rows: list[dict[str, Any]], signal_names: list[str]) -> list[dict[str, Any]]:
-    """Rows by signal, in the order of these names."""
-    return sorted(rows, key=lambda row: signal_names.index(row["dataset"]["name"]))

@@ -6,6 +6,7 @@ string-typed and of typed records compare.
 
 import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -29,7 +30,6 @@ from mmweaver.motion.language.sentence import parse
 from mmweaver.motion.language.timing import natural_s
 from mmweaver.propagation.static_paths import Propagation
 
-RADHAR_LABELS = ("boxing", "jack", "jump", "squats", "walk")
 # name of a projected field -> name of today's; what only schedules, quotes or personalizes a step is left out
 PROJECTION = {
     "body": "lower", "hands": "upper", "hand": "hand", "foot": "foot", "way": "direction", "bend_deg": "arc_deg",
@@ -175,52 +175,17 @@ def placements(index: int) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def real_placements(folder: Path, num_seeds: int) -> dict[str, Any]:
-    """The same of a photographed room, its six sentences and some seeds."""
-    from studies.scene import real_placements as study
-
-    vars(study)["SEEDS"] = range(num_seeds)
-    row = study.room_row(folder)
-    counts = {
-        name: row["metrics"][long] for name, long in (("clear", "placements_clear"), ("arms_clear", "arms_clear"))
-    }
-    return {name: [round(one["value"] * one["of"]), one["of"]] for name, one in counts.items()} | {
-        "refused": row["refused"], "floor_error_m": row["metrics"]["floor_error_m"]["value"],
-    }  # fmt: skip
-
-
 # RadHAR -------------------------------------------------------------------------------------------------------------
-def make_window(path: Path, label: str, index: int, seed: int) -> None:
-    """A generated window of RadHAR's recipe in a file."""
-    from studies.recognition.zero_shot_recipe import generate_window, radhar_recipe, write_window
+def score_of_shipped(data: Path) -> dict[str, Any]:
+    """The shipped recogniser on the half of RadHAR's recordings that its method was developed on."""
+    from mmweaver.recognition.point_recordings import read_task_recordings
+    from mmweaver.recognition.recogniser import load_recogniser
+    from mmweaver.recognition.scoring import score_recordings
 
-    write_window(path, generate_window(radhar_recipe(), label, index, seed))
-
-
-def score_of_windows(paths: list[Path], data: Path, seed: int) -> dict[str, Any]:
-    """A recogniser trained on generated windows, evaluated on RadHAR's developed half."""
-    from studies.recognition.zero_shot_recipe import radhar_recipe, read_window
-    from studies.recognition.zero_shot_training import featurize
-
-    windows = [read_window(path, path.stem.split("_")[0], radhar_recipe()) for path in paths]
-    return _score(featurize(windows, seed=seed).train(), data, radhar_recipe().window_s)
-
-
-def score_of_frozen(name: str, data: Path) -> dict[str, Any]:
-    """The frozen recogniser on the same."""
-    from studies.recognition.zero_shot_training import load_frozen
-
-    frozen = load_frozen(name)
-    return _score(frozen.train(), data, frozen.window_s)
-
-
-def _score(model: Any, data: Path, window_s: float) -> dict[str, Any]:
-    from mmweaver.recognition.scoring import report
-    from studies.recognition.zero_shot_anew import developed, radhar_recordings
-    from studies.recognition.zero_shot_training import evaluate_recogniser
-
-    people = developed(radhar_recordings(data / "pointclouds" / "radhar"))
-    window = report(evaluate_recogniser(model, people, window_s))["window"]
+    model = load_recogniser(Path(__file__).resolve().parents[1] / "weights" / "recogniser_radhar")
+    recordings = read_task_recordings(data / "pointclouds" / "radhar", model.settings)
+    developed = [one for one in recordings if re.search(r"[a-z]_20_\d+$", one.name)]
+    window = score_recordings(model, developed)["window"]
     return {name: window[name] for name in ("balanced_accuracy", "interval_95", "n")}
 
 

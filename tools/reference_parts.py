@@ -21,7 +21,7 @@ GOLDEN = ROOT / "tests" / "golden"
 TEXTS = (("a person waves with the left hand", 12), ("a man boxes quickly", 12),
          ("a person walks to the left, then squats", 30))  # fmt: skip
 SEEDS = (0, 7)
-PROCEDURAL_ROOMS, REAL_SEEDS, WINDOWS_EACH, WINDOW_SEED = 60, 2, 40, 0
+PROCEDURAL_ROOMS = 60
 PERSON = re.compile(
     r"^(?:(?:an?|the|one|another|some|this|two|three)\s+)?(?:\w+[\s-]){0,3}?(?:person|man|woman|boy|girl|lady|guy|user|"
     r"human|subject|someone|somebody|he|she|they|people|figure|child|kid|individual|patient|dancer|toddler|nurse)\s+\w",
@@ -295,28 +295,12 @@ def lossless(recording: Path, max_error: int) -> dict[str, Any]:
 def placements(folders: Folders) -> Iterator[tuple[str, Thunk]]:
     for index in range(PROCEDURAL_ROOMS):
         yield f"procedural/{index:02d}", lambda index=index: code.placements(index)
-    for folder in sorted((folders.data / "rooms").glob("*/camera.json")):
-        yield f"real/{folder.parent.name}", lambda folder=folder: code.real_placements(folder.parent, REAL_SEEDS)
 
 
 def radhar(folders: Folders) -> Iterator[tuple[str, Thunk]]:
     if not (folders.data / "pointclouds" / "radhar").is_dir():
         return
-    yield "frozen recogniser", lambda: code.score_of_frozen("development", folders.data)
-    yield f"recipe, {WINDOWS_EACH} windows each, seed {WINDOW_SEED}", lambda: recipe_score(folders)
-
-
-def recipe_score(folders: Folders) -> dict[str, Any]:
-    place, began = folders.own / "windows", time.process_time()
-    place.mkdir(exist_ok=True)
-    names = [(label, index) for index in range(WINDOWS_EACH) for label in code.RADHAR_LABELS]
-    paths = [place / f"{label}_{WINDOW_SEED}_{index}.npz" for label, index in names]
-    for path, (label, index) in zip(paths, names, strict=True):
-        if not path.exists():
-            code.make_window(path, label, index, WINDOW_SEED)
-    arrays = sha(*(arrays_of(path) for path in paths))
-    score = code.score_of_windows(sorted(paths), folders.data, WINDOW_SEED)
-    return {**score, "windows": arrays, "seconds": round(time.process_time() - began, 1)}
+    yield "shipped recogniser", lambda: code.score_of_shipped(folders.data)
 
 
 def files(folders: Folders) -> Iterator[tuple[str, Thunk]]:

@@ -5,7 +5,7 @@
 
 Parts: cubes, steps, mmw, placements, radhar, files; cubes/bundled are the entries of one that begin so. Next to
 OUT.json a folder of its name holds what the digests were made of: sentences with their steps (one JSON line each),
-cubes that are encoded, generated windows. `compare` takes sentences and cubes from there, so that sources that change
+cubes that are encoded. `compare` takes sentences and cubes from there, so that sources that change
 do not change the question, and prints what differs; sentences that are read otherwise stand side by side in
 build/references/steps_*_differing.txt. Everything runs in one process on one core; set OMP_NUM_THREADS=1.
 reference_parts.py makes the parts; reference_adapter.py alone names modules.

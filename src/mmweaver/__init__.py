@@ -32,7 +32,7 @@ _HOME = {
     "Comparison": "evaluation.compare_signals",
     "Generation": "weaver.generation",
     "InputError": "core.errors",
-    "PRESETS": "core.presets",
+    "PRESETS": "core.boards",
     "PointCloud": "core.records",
     "PoseSequence": "core.records",
     "RadarConfig": "core.radar_config",

@@ -1,6 +1,5 @@
-"""Codecs that keep coefficients: wavelets, the largest cells, the antennas' KLT with an arithmetic coder."""
+"""Codecs that keep coefficients of the antennas' KLT: the largest, or all with an arithmetic coder."""
 
-import warnings
 import zlib
 
 import numpy as np
@@ -11,61 +10,10 @@ from mmweaver.compression.legacy_chunk import LegacyLevelCoder
 from mmweaver.compression.transforms import ChunkTransform, TransformChoice
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
-from studies.baselines.codec_interface import KnobCodec, library
+from studies.baselines.codec_interface import KnobCodec
 
 MAGNITUDE_BITS, PHASE_BITS = 8, 6
 LOUDEST_DB, DB_A_STEP = 0.0, 0.25
-
-
-class Wavelets(KnobCodec):
-    """Three-dimensional bior4.4 wavelet over frame, range and Doppler of each antenna, rounded and deflated."""
-
-    name = "wavelets"
-    coarse, fine = 2.0, 1e-4
-
-    def at(self, values: CubeValues, knob: float, cube: RadarCube) -> bytes:
-        flat, _ = _wavelet(values)
-        parts = np.stack([np.real(flat), np.imag(flat)])
-        levels = np.sign(parts) * np.floor(np.abs(parts) / knob + 0.35)
-        words = np.clip(levels, -32768, 32767).astype("<i2")
-        # high and low bytes apart: most high ones are equal
-        return np.float32(knob).tobytes() + zlib.compress(words.view(np.uint8).reshape(-1, 2).T.tobytes(), 9)
-
-    def back(self, data: bytes, like: RadarCube) -> np.ndarray:
-        pywt = library("pywt")
-
-        step = np.frombuffer(data[:4], np.float32)[0]
-        words = np.frombuffer(zlib.decompress(data[4:]), np.uint8).reshape(2, -1).T.copy().view("<i2")
-        empty = np.zeros(like.grid.shape, np.complex64)
-        flat, slices = _wavelet(empty)
-        real, imaginary = (words.astype(np.float32) * step).reshape(2, *flat.shape)
-        pieces = pywt.array_to_coeffs(real + 1j * imaginary, slices, output_format="wavedecn")
-        frames, num_range, num_doppler, _ = like.grid.shape
-        whole = pywt.waverecn(pieces, "bior4.4", mode="periodization", axes=(0, 1, 2))
-        return whole[:frames, :num_range, :num_doppler]
-
-
-def _wavelet(values: np.ndarray) -> tuple[np.ndarray, list]:
-    pywt = library("pywt")
-
-    with warnings.catch_warnings():  # where an axis is short, all of it is an edge: no concern of the user's
-        warnings.filterwarnings("ignore", message="Level value of", category=UserWarning)
-        pieces = pywt.wavedecn(values, "bior4.4", mode="periodization", level=2, axes=(0, 1, 2))
-    flat, slices = pywt.coeffs_to_array(pieces, axes=(0, 1, 2))
-    return flat, slices
-
-
-class TopCells(KnobCodec):
-    """The largest cells: positions (deflated gaps), 8 bits of log magnitude, 6 of phase. Parameter: how many."""
-
-    name = "top_cells"
-    coarse, fine = 8.0, 60_000.0
-
-    def at(self, values: CubeValues, knob: float, cube: RadarCube) -> bytes:
-        return packed_top(values, int(knob))
-
-    def back(self, data: bytes, like: RadarCube) -> np.ndarray:
-        return unpacked_top(data, like.grid.shape)
 
 
 def packed_top(values: np.ndarray, count: int) -> bytes:

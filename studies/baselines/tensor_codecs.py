@@ -1,4 +1,4 @@
-"""Low-rank tensors with factors in 8 bits (CP in 16): truncated SVD, Tucker, CP and tensor train."""
+"""Low-rank tensors with factors in 8 bits (CP in 16): truncated SVD, Tucker and CP."""
 
 import zlib
 
@@ -63,33 +63,6 @@ class Tucker(KnobCodec):
         for axis, factor in enumerate(factors):
             core = np.moveaxis(np.tensordot(factor, core, (1, axis)), 0, axis)
         return core
-
-
-class TensorTrain(KnobCodec):
-    """Tensor train by successive SVDs (range, frame, doppler, antenna), truncated at singular values below 1 /
-    parameter."""
-
-    name = "tensor_train"
-    coarse, fine = 1.0, 1e4
-
-    def at(self, values: CubeValues, knob: float, cube: RadarCube) -> bytes:
-        rest = values.transpose(1, 0, 2, 3)
-        shape, cores, rank = rest.shape, [], 1
-        least = np.linalg.norm(values) / knob
-        for size in shape[:-1]:
-            left, strength, right = np.linalg.svd(rest.reshape(rank * size, -1), full_matrices=False)
-            new = max(1, int((strength > least).sum()))
-            root = np.sqrt(strength[:new])
-            cores.append((left[:, :new] * root).reshape(rank, size, new))
-            rest, rank = right[:new] * root[:, None], new
-        return packed([*cores, rest.reshape(rank, shape[-1], 1)])
-
-    def back(self, data: bytes, like: RadarCube) -> np.ndarray:
-        whole = np.ones((1, 1))
-        for core in unpacked(data):
-            whole = (whole @ core.reshape(core.shape[0], -1)).reshape(-1, core.shape[2])
-        frames, num_range, num_doppler, antennas = like.grid.shape
-        return whole.reshape(num_range, frames, num_doppler, antennas).transpose(1, 0, 2, 3)
 
 
 class Cp(Codec):

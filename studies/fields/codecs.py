@@ -6,6 +6,7 @@ python -m studies run codecs --data <recordings>        (needs the extra `codecs
 import argparse
 import json
 import math
+import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -14,18 +15,19 @@ from typing import Any
 
 import numpy as np
 
+from mmweaver.compression.mmw_codec import compress_cube, read_cube
+from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
 from mmweaver.core.registry import Registry
+from mmweaver.core.shapes import CubeValues
 from studies.baselines.codec_interface import Codec
-from studies.baselines.coefficient_codecs import KltContext, TopCells, TopCoefficients, Wavelets
-from studies.baselines.float_compressors import Blosc2, Sperr, Sz3, Zfp
-from studies.baselines.mmweaver_codec import Mmw
+from studies.baselines.coefficient_codecs import KltContext, TopCoefficients
+from studies.baselines.library_codecs import Blosc2, Jpeg2000, JpegXl, Sperr
 from studies.baselines.network_codecs import InrInBytes
-from studies.baselines.picture_codecs import Jpeg2000, JpegXl
-from studies.baselines.tensor_codecs import Cp, TensorTrain, TruncatedSvd, Tucker
+from studies.baselines.tensor_codecs import Cp, TruncatedSvd, Tucker
 from studies.fields.field_signals import RECORDED, SIGNALS, StudySignal
 from studies.manifest import StudyRun
-from studies.result_rows import complete_rows, in_order, kept_rows
+from studies.result_rows import complete_rows
 from studies.scores.cube_scores import BASELINES, cells_of, nmse_db
 from studies.scores.scorecard import METRICS
 from studies.study import Reads
@@ -34,14 +36,35 @@ EXPERIMENT = "codecs"
 SIZES = (2504, 5009, 10018, 20036, 40072)
 SCORES = ("nmse_db", "nmse_active_db", "nmse_moving_db")
 
+
+class Mmw(Codec):
+    """Scatterers, static layer and residual in a .mmw file; with `keep_noise`, noise cells have the same weight as
+    others."""
+
+    def __init__(self, *, keep_noise: bool = False, effort: str = "full"):
+        self.keep_noise, self.effort = keep_noise, effort
+        self.name = "mmw_keep_noise" if keep_noise else "mmw"
+
+    def encoded(self, cube: RadarCube, num_bytes: int) -> bytes | None:
+        try:
+            return compress_cube(cube, num_bytes=num_bytes, keep_noise=self.keep_noise, effort=self.effort)
+        except InputError:
+            return None
+
+    def decoded(self, data: bytes, like: RadarCube) -> CubeValues:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "cube.mmw"
+            path.write_bytes(data)
+            return read_cube(path).values
+
+
 CODECS: Registry[Callable[[], Codec]] = Registry(
     "codec",
     [
         ("mmw", Mmw), ("mmw_keep_noise", lambda: Mmw(keep_noise=True)),
-        ("klt_context", KltContext), ("top_klt", TopCoefficients), ("top_cells", TopCells),
-        ("wavelets", Wavelets), ("sz3", Sz3), ("sperr", Sperr), ("zfp", Zfp), ("blosc2", Blosc2),
+        ("klt_context", KltContext), ("top_klt", TopCoefficients), ("sperr", Sperr), ("blosc2", Blosc2),
         ("jpeg2000", Jpeg2000), ("jpegxl", JpegXl), ("svd", TruncatedSvd), ("tucker", Tucker), ("cp", Cp),
-        ("tensor_train", TensorTrain), ("inr_paper", lambda: InrInBytes("paper")),
+        ("inr_paper", lambda: InrInBytes("paper")),
         ("inr_smooth_short", lambda: InrInBytes("smooth_short")),
     ],
 )  # fmt: skip
@@ -106,19 +129,12 @@ def measure(
     signal_names: list[str],
     data: Path | None,
     sizes: tuple[int, ...],
-    *,
-    keep: bool = False,
 ) -> None:
-    """Every codec on every signal at every size; one file a codec, written when the codec is done.
-
-    With `keep`, rows of other signals are copied from the results of an earlier run, each with its own commit.
-    """
+    """Every codec on every signal at every size; one file a codec, written when the codec is done."""
     signals = [SIGNALS[name](data) for name in signal_names]
     for name in codec_names:
         codec = CODECS[name]()
         rows = [codec_row(codec, signal, size) for signal in signals for size in sizes]
-        kept = kept_rows(run.out / EXPERIMENT / f"{name}.json", signal_names) if keep else []
-        rows = in_order(rows + kept, list(SIGNALS))
         path = run.write(EXPERIMENT, name, config={"sizes": list(sizes)}, rows=complete_rows(rows))
         print(json.dumps({"codec": name, "written": str(path)}), flush=True)
 
@@ -130,10 +146,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--codecs", nargs="*", default=list(CODECS))
     parser.add_argument("--signals", nargs="*", default=None)
     parser.add_argument("--sizes", nargs="*", type=int, default=SIZES)
-    parser.add_argument("--keep", action="store_true", help="keep the rows of signals that are not measured now")
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     every = [name for name in SIGNALS if options.data is not None or name not in RECORDED]
     signals = options.signals or every
-    measure(run, options.codecs, signals, options.data, tuple(options.sizes), keep=options.keep)
+    measure(run, options.codecs, signals, options.data, tuple(options.sizes))

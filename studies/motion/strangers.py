@@ -1,14 +1,11 @@
-"""How many everyday sentences does the default command make? 200, written before the grammar was changed, and 600 more.
+"""How many everyday sentences does the default command make? 200, written before the grammar was changed.
 
 python -m studies run strangers
-python -m studies run strangers --draw second
 
 The 200 are in studies/motion/sentences/strangers.txt, written by one person as a stranger might say them; the grammar
-was developed on others. The 150 of strangers_second.txt, _third, _fourth and _fifth each were written by a language
-model that had not seen the grammar, and were read after it was frozen (see `unread_prompts`). Each is parsed and
-composed in the bundled room with seed 0 and no other option. A sentence is made whole where every clause is done,
-approximated where one is shown as something similar or left out.
-Refusals are counted by their reason. The baseline is what the same command made before (commit 238a8a5).
+was developed on others. Each is parsed and composed in the bundled room with seed 0 and no other option. A sentence is
+made whole where every clause is done, approximated where one is shown as something similar or left out. Refusals are
+counted by their reason. The baseline is what the same command made before (commit 238a8a5).
 """
 
 import argparse
@@ -27,11 +24,6 @@ from studies.manifest import StudyRun
 from studies.result_rows import complete_rows
 
 SENTENCES = Path(__file__).parent / "sentences" / "strangers.txt"
-DRAWS = {
-    "default": SENTENCES, "second": SENTENCES.with_name("strangers_second.txt"),
-    "third": SENTENCES.with_name("strangers_third.txt"), "fourth": SENTENCES.with_name("strangers_fourth.txt"),
-    "fifth": SENTENCES.with_name("strangers_fifth.txt"),
-}  # fmt: skip
 BEFORE = 72 / 200  # made at commit 238a8a5, by the same steps
 REASONS = {"names no activity": "unknown", "was found in the photo": "not in the room", "no room": "no room",
            "nobody can be": "not in the room", "at the same time": "at the same time"}  # fmt: skip
@@ -49,8 +41,8 @@ def outcome(weaver: Weaver, room: Room, text: str) -> tuple[str, str]:
     return ("done" if all(clause.status == "done" for clause in made.clauses) else "approximated"), ""
 
 
-def result_row(outcomes: list[tuple[str, str]], digest: str, *, before: float | None = BEFORE) -> dict[str, Any]:
-    """Shares of the sentences, and the reasons of refusals; `before`: the share made by the baseline, if known."""
+def result_row(outcomes: list[tuple[str, str]], digest: str) -> dict[str, Any]:
+    """Shares of the sentences, and the reasons of refusals."""
     count = Counter(kind for kind, _ in outcomes)
     reasons = Counter(
         next((short for words, short in REASONS.items() if words in message), "other")
@@ -62,8 +54,7 @@ def result_row(outcomes: list[tuple[str, str]], digest: str, *, before: float | 
         return {"value": part / n, "n": n, "unit": "share", "definition": definition, "version": 1, **more}
 
     metrics = {"made": share(n - count["refused"], "sentences that the default command makes in the bundled room")}
-    if before is not None:
-        metrics["made_before"] = share(round(before * n), "the same at commit 238a8a5")
+    metrics["made_before"] = share(round(BEFORE * n), "the same at commit 238a8a5")
     metrics["done"] = share(count["done"], "made, every clause as it was said")
     metrics["approximated"] = share(count["approximated"], "made, a clause approximated or not shown, which is said")
     return {
@@ -76,16 +67,15 @@ def result_row(outcomes: list[tuple[str, str]], digest: str, *, before: float | 
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--draw", choices=tuple(DRAWS), default="default", help="which sentences")
+    """It has none."""
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     weaver = Weaver(Physics(Propagation(bounces=1, clutter=False)))
     room = weaver.sample_room()
-    path = DRAWS[options.draw]
-    texts = path.read_text(encoding="utf-8").splitlines()
-    digest = hashlib.sha256(path.read_bytes()).hexdigest()
+    texts = SENTENCES.read_text(encoding="utf-8").splitlines()
+    digest = hashlib.sha256(SENTENCES.read_bytes()).hexdigest()
     outcomes = [outcome(weaver, room, text) for text in texts]
-    row = result_row(outcomes, digest, before=BEFORE if options.draw == "default" else None)
+    row = result_row(outcomes, digest)
     unknown = {"seconds": "see the manifest"}
-    run.write("strangers", options.draw, config={"room": "bundled"}, rows=complete_rows([row], unknown=unknown))
+    run.write("strangers", "default", config={"room": "bundled"}, rows=complete_rows([row], unknown=unknown))

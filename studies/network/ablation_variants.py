@@ -16,7 +16,7 @@ class AblationVariant:
         photo: whose photo is the input when it is evaluated: "own", "generic" or "shuffled".
         motion: whose joints are the input when it is evaluated: "own", or "other", the room's next sequence.
         power: in place of the network recipe `paper_power`, a hypernetwork that writes fields of power, with
-            coordinates counted from what is seen ("anchored") or the radar's alone ("radar").
+            coordinates counted from what is seen.
         has_one_code: whether its fields are written with the code of the generic photo and one pose, whatever is seen.
     """
 
@@ -26,7 +26,7 @@ class AblationVariant:
     is_sampled: bool = False
     photo: str = "own"  # or "generic", "shuffled"
     motion: str = "own"  # or "other"
-    power: str = ""  # or "anchored", "radar"
+    power: bool = False
     has_one_code: bool = False
 
     @property
@@ -45,11 +45,10 @@ VARIANTS = {
     "shuffled photo": AblationVariant(photo="shuffled"),
     "another motion": AblationVariant(motion="other"),
     # what the paper has in place of echoes on joints and surfaces
-    HYPERNETWORK: AblationVariant(power="anchored", recipe=POWER),
-    f"{HYPERNETWORK}, generic photo": AblationVariant(power="anchored", recipe=POWER, photo="generic"),
-    f"{HYPERNETWORK}, another motion": AblationVariant(power="anchored", recipe=POWER, motion="other"),
-    f"{HYPERNETWORK}, one code for all": AblationVariant(power="anchored", recipe=POWER, has_one_code=True),
-    f"{HYPERNETWORK}, the radar's coordinates alone": AblationVariant(power="radar", recipe=POWER),
+    HYPERNETWORK: AblationVariant(power=True, recipe=POWER),
+    f"{HYPERNETWORK}, generic photo": AblationVariant(power=True, recipe=POWER, photo="generic"),
+    f"{HYPERNETWORK}, another motion": AblationVariant(power=True, recipe=POWER, motion="other"),
+    f"{HYPERNETWORK}, one code for all": AblationVariant(power=True, recipe=POWER, has_one_code=True),
     # anchors and what physics says
     "no ghosts": AblationVariant(without=("ghosts", "correction")),
     "no echoes between joints": AblationVariant(without=("between joints", "correction")),
@@ -58,17 +57,12 @@ VARIANTS = {
     "no physics at all": AblationVariant(without=("room prior", "body prior")),
     # heads
     "no steps of echoes": AblationVariant(without=("steps", "correction")),
-    "surfaces turned up and down": AblationVariant(without=()),
     "no learned reflectors": AblationVariant(without=("faces", "correction")),
     # the encoder's picture; where surfaces stand is known in all
-    "colour alone": AblationVariant(without=("depth", "mask", "correction")),
-    "depth alone": AblationVariant(without=("colour", "mask", "correction")),
-    "mask alone": AblationVariant(without=("colour", "depth", "correction")),
     "no picture": AblationVariant(without=("colour", "depth", "mask", "correction")),
     # losses and targets
     "no target of the person alone": AblationVariant(terms_without=("_person",)),
     "no target of the background": AblationVariant(terms_without=("_empty",)),
-    "no pooled maps": AblationVariant(terms_without=("_4x2", "_8x8")),
     "sampled signals, no expected maps": AblationVariant(is_sampled=True),
     "no reflected rooms": AblationVariant(recipe=(("mirror", False),)),
 }

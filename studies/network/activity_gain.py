@@ -51,7 +51,6 @@ from mmweaver.training.activity_training import TRAIN_MAPS, TRAIN_SPLITS, activi
 from studies.manifest import StudyRun
 from studies.network.learned_scores import OTHER, board_seen_in, empty_room, interval
 from studies.network.room_cache import RoomCache, digest
-from studies.paper.paper_method import load_paper, paper_field
 from studies.result_rows import complete_rows, dataset_of
 from studies.study import Reads
 
@@ -169,22 +168,6 @@ def with_generated(
             board = board_seen_in(empty, room.own_board)
         learned = LearnedRoom(network, scene_of(room), config, room_seed=1, background=empty, board=board)
         return lambda pose, seed: learned.cube([FrameMotion.of(pose, config, num_frames)], seed=seed)
-
-    return method
-
-
-def paper_in(weights: Path) -> Method:
-    """The paper's network."""
-    network = load_paper(weights)
-
-    def method(room: UnseenRoom) -> Maker:
-        config, num_frames = room.room.config, room.room.joints_m.shape[1]
-
-        def make(pose: PoseSequence, seed: int) -> RadarCube:
-            motion = FrameMotion.of(pose, config, num_frames)
-            return paper_field(network, room.photographed, config, motion.joints_m, motion.velocity_mps).cube()
-
-        return make
 
     return method
 
@@ -359,10 +342,10 @@ def few_of(label: np.ndarray, count: int) -> np.ndarray:
     return order[np.argsort(place[order], kind="stable")][:count]
 
 
-def methods_of(weaver: WeaverNetwork, paper: Path | None) -> dict[str, Method]:
+def methods_of(weaver: WeaverNetwork) -> dict[str, Method]:
     """The methods whose data is compared."""
     physics = partial(simulated_in, board_of=lambda room: room.other_board)
-    methods: dict[str, Method] = {
+    return {
         "weaver": with_generated(weaver, lambda room: room.photographed),
         "weaver_with_background": with_generated(weaver, lambda room: room.photographed, recorded=True),
         "wrong_photo": with_generated(weaver, lambda room: reconstruct(room.other.photo)),
@@ -372,18 +355,15 @@ def methods_of(weaver: WeaverNetwork, paper: Path | None) -> dict[str, Method]:
             lambda room: room.true_scene(room.room), micro_seed=0, board_of=lambda room: room.own_board
         ),
     }
-    return methods if paper is None else {**methods, "paper": paper_in(paper)}
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, action=Reads, required=True)
     parser.add_argument("--weights", type=Path, action=Reads, help="of recipe weaver (default: those included)")
     parser.add_argument("--recogniser", type=Path, action=Reads, required=True, help="of recipe activity")
-    parser.add_argument("--paper", type=Path, action=Reads, help="of recipe paper")
     parser.add_argument("--rooms", type=int, default=40)
     parser.add_argument("--each", type=int, default=2, help="generated motions of each activity")
     parser.add_argument("--recordings", type=int, default=60, help="of other rooms, for a head that begins anew")
-    parser.add_argument("--only", nargs="*", help="methods (default: all)")
     parser.add_argument("--runs", type=Path, help="folder for rooms that are done")
 
 
@@ -393,10 +373,9 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     rooms = unseen_rooms(read_rooms(options.data), plan, options.rooms)
     weaver, card = load_weights(weights)
     studies = gain_studies(options.recogniser, options.data, options.recordings)
-    methods = methods_of(weaver, options.paper)
-    methods = {name: methods[name] for name in options.only or methods}
+    methods = methods_of(weaver)
     about = {"weights": asdict(card), "data_plan": plan, "each": options.each, "steps": STEPS}
-    files = [digest(file) for file in (weights, options.recogniser, options.paper) if file is not None]
+    files = [digest(file) for file in (weights, options.recogniser)]
     names = [room.name for room in rooms]
     cache = RoomCache(
         options.runs, {**about, "recordings": options.recordings, "files": files, "methods": list(methods)}

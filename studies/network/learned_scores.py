@@ -2,7 +2,6 @@
 
     python -m studies run learned_scores --data DATASET --weights FILE
     python -m studies run learned_scores --data DATASET --weights FILE --split test_person --most 40
-    python -m studies run learned_scores --data DATASET --weights FILE --paper PAPER/weights.safetensors
     python -m studies run learned_scores --data DATASET --power weights/paper_power.safetensors --called paper_power
     python -m studies run learned_scores --data OF_ANOTHER_RADAR --other-radar hupr
 
@@ -10,9 +9,9 @@ Ground truth is the simulator in the true room, with all paths and clutter, and 
 `realization` is the same simulator with other surface micro-phases of room and person: the oracle for methods that
 cannot know them. `realization_skin` knows those of the room, and `weaver_with_background` was given a recording of the
 room without the person. `static_mean` is that of the ground truth itself, `training_mean` and `nearest_training_pose`
-those of the rooms trained on. `paper` is the paper's own network (study `train_paper`),
-`paper_power` the same idea with power as its target, also shown another room's photo, and before training; `energy_db`,
-the energy of a cube over that of the ground truth, shows whether it has collapsed. Intervals: bootstrap over rooms.
+those of the rooms trained on. `paper_power` is the idea of the paper's network with power as its target, also shown
+another room's photo, and before training; `energy_db`, the energy of a cube over that of the ground truth,
+shows whether it has collapsed. Intervals: bootstrap over rooms.
 """
 
 import argparse
@@ -36,9 +35,11 @@ from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.datasets.room_generation import generate_sequence, pose_of
 from mmweaver.evaluation.background_board import BackgroundBoard
 from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.models.hypernetwork_rooms import FieldRoom, load_hypernetwork
 from mmweaver.models.neural_path_solver import LearnedRoom
+from mmweaver.models.power_network import PowerNetwork
 from mmweaver.models.scatterer_network import ScattererNetwork
-from mmweaver.models.weights import load_weights, read_card, shipped_weights
+from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.propagation.diffuse_clutter import seed_of_room
 from mmweaver.propagation.paths import FrameClock
 from mmweaver.propagation.ray_traced import Simulator
@@ -46,12 +47,9 @@ from mmweaver.propagation.static_paths import ALL_PATHS, Propagation
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.signal.cube import radar_cube
+from mmweaver.training.hypernetwork_training import HypernetworkRecipe, initial_power_network
 from studies.manifest import StudyRun
 from studies.network.room_cache import RoomCache, digest
-from studies.paper.paper_method import paper_method
-from studies.paper.power_method import FieldRoom, load_power
-from studies.paper.power_network import PowerNetwork
-from studies.paper.power_training import PowerRecipe, initial_power_network
 from studies.result_rows import complete_rows, dataset_of
 from studies.scores.scorecard import METRICS, scorecard
 from studies.study import Reads
@@ -312,12 +310,10 @@ def cases_of(
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, action=Reads, required=True)
     parser.add_argument("--weights", type=Path, action=Reads, help="of recipe weaver (default: those included)")
-    parser.add_argument("--paper", type=Path, action=Reads, help="of recipe paper, for a row of its own")
-    parser.add_argument("--power", type=Path, action=Reads, help="of recipe paper_power, for a row of its own")
+    parser.add_argument("--power", type=Path, action=Reads, help="of target power, for a row of its own")
     parser.add_argument("--split", default="test_room")
     parser.add_argument("--each", type=int, default=1, help="sequences of each room")
     parser.add_argument("--most", type=int, help="rooms, sampled at random (default: all that have the split)")
-    parser.add_argument("--only", nargs="*", help="rows (default: all)")
     parser.add_argument("--runs", type=Path, help="folder for what is done, to go on from")
     parser.add_argument("--called", metavar="NAME", help="the result's name (default: the split)")
     parser.add_argument("--other-radar", metavar="NAME", help="data of another radar or length: a result of this name")
@@ -341,20 +337,16 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         "realization": simulated(lambda case: case.true_scene, skin=OTHER, micro_seed=1),
     }
     about = {"weights": card.__dict__, "data_plan": plan, "each": options.each}
-    if options.paper is not None:
-        methods["paper"] = paper_method(options.paper)
-        about["paper"] = read_card(options.paper).__dict__
     if options.power is not None:
-        power, power_card = load_power(options.power)
+        power, power_card = load_hypernetwork(options.power)
+        assert isinstance(power, PowerNetwork), "weights of target power"
         methods["paper_power"] = learned(power, lambda case: case.room)
         methods["paper_power_wrong_photo"] = learned(power, lambda case: case.other)
-        recipe = PowerRecipe(is_anchored=bool(power_card.settings.get("is_anchored", True)))
+        recipe = HypernetworkRecipe()
         methods["paper_power_untrained"] = learned(initial_power_network(recipe).eval(), lambda case: case.room)
         about["paper_power"] = power_card.__dict__
-    if options.only:
-        methods = {name: methods[name] for name in options.only}
     names = [f"{case.room.kind}_{case.room.layout}" for case in cases]
-    of = dict.fromkeys(WEAVER_ROWS, weights) | dict.fromkeys(POWER_ROWS, options.power) | {"paper": options.paper}
+    of = dict.fromkeys(WEAVER_ROWS, weights) | dict.fromkeys(POWER_ROWS, options.power)
     made_by = {name: digest(of[name]) if name in of else None for name in methods}
     caches = {
         name: RoomCache(options.runs, {"data_plan": plan, "row": name, "weights": made_by[name]}) for name in methods

@@ -1,4 +1,4 @@
-"""How near do other generators come to the ground truth in unseen rooms, and does clutter matter?
+"""How near do other generators come to the ground truth in unseen rooms?
 
     mmweaver dataset rooms/ --rooms living_room,classroom,workshop --layouts 24 --sequences 16 --geometry-only
     python -m studies run peer_scores --data rooms/ --runs build/peers
@@ -9,8 +9,6 @@ something. RF-Genesis has no scale, so each of its sequences is given the gain t
 oracle's. Rows: as released, repaired with the body alone, with a generic room, with our photographed room. `zeros` and
 `generic_room_physics` are the baselines, `realization`, the true room with other phases, the oracle. Each row of a room
 is cached, so a stopped run goes on, and another row costs its own time alone.
-
-`clutter` groups the rooms into thirds by the share of the floor within the radar's range that furniture covers.
 """
 
 import argparse
@@ -19,7 +17,6 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +30,6 @@ from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from studies.manifest import StudyRun
-from studies.network.clutter import CLUTTER, clutter_of, third_of
 from studies.network.learned_scores import OTHER, Case, Method, cases_of, interval, learned, simulated
 from studies.network.room_cache import RoomCache, digest
 from studies.peers.rf_genesis import RfGenesis, Triangles
@@ -45,11 +41,6 @@ COLUMNS = ("ra_ssim", "rd_ssim", "ra_difference_db", "rd_difference_db", "cssim"
 BASELINES, ORACLES = ("zeros", "generic_room_physics"), ("realization",)
 ROOM_PIXELS = 64  # of RF-Genesis with a room: every pixel of it is an echo
 ROOMS = 48  # sampled as those of learned_scores
-LEAST_ROOMS_BY_CLUTTER = 12
-CLUTTER_ROWS = (
-    "zeros", "generic_room_physics", "rf_genesis_repaired_photographed_room", "weaver", "physics_in_photographed_room",
-    "realization",
-)  # fmt: skip
 Scores = dict[str, dict[str, float]]
 
 
@@ -105,25 +96,15 @@ def scores_of(case: Case, truth: Callable[[], Representations], name: str, metho
     return {**{column: METRICS[column].score(prediction, reference) for column in COLUMNS}, "cpu_s": seconds}
 
 
-def kinds_in_turn(cases: list[Case]) -> list[Case]:
-    """The cases in an order that takes one room of each kind after the other, so that any first part is balanced."""
-    of_kind: dict[str, list[Case]] = {}
-    for case in cases:
-        of_kind.setdefault(case.room.kind, []).append(case)
-    return [case for turn in zip_longest(*of_kind.values()) for case in turn if case is not None]
-
-
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, action=Reads, required=True, help="of mmweaver dataset, with signals")
     parser.add_argument("--split", default="test_room")
-    parser.add_argument("--most", type=int, default=ROOMS, help="of the 48 rooms, the kinds in turn")
     parser.add_argument("--runs", type=Path, help="folder for what is done, to go on from")
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     plan = read_plan(options.data)
     cases = cases_of(read_rooms(options.data), options.split, 1, plan, 0, ROOMS)
-    cases = kinds_in_turn(cases)[: options.most]
     network, card = load_weights(shipped_weights())
     methods = methods_of(network, make_room("office", 0, plan["seed"]).scene("day"))
     about = {"data_plan": plan, "weights": digest(shipped_weights()), "columns": COLUMNS}
@@ -139,33 +120,12 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
             }
         )
         print(name, {row: round(values["ra_ssim"], 2) for row, values in each[-1].items()}, flush=True)
-    settings = {"weights": card.__dict__, "data_plan": plan}
     rows = [_row(name, each, names) for name in each[0]]
-    run.write("peer_scores", options.split, config=settings, rows=_complete(rows, options.data))
-    if len(cases) < LEAST_ROOMS_BY_CLUTTER:
-        print(f"no groups by clutter, for they need {LEAST_ROOMS_BY_CLUTTER} rooms")
-        return
-    clutter = np.array([clutter_of(case.true_scene, case.room.config) for case in cases])
-    rows = [row for level in CLUTTER for row in _clutter_rows(level, clutter, each, names, options.data)]
-    run.write("peer_scores", "clutter", config=settings, rows=rows)
-
-
-def _clutter_rows(
-    level: str, clutter: np.ndarray, each: list[Scores], names: list[str], data: Path
-) -> list[dict[str, Any]]:
-    """Rows of the third of the rooms with this much clutter."""
-    third = third_of(clutter, level)
-    rows = [_row(name, [each[i] for i in third], [names[i] for i in third]) for name in CLUTTER_ROWS]
-    covered = [float(clutter[third].min()), float(clutter[third].max())]
-    rows = [{**row, "clutter": level, "share_of_floor_covered": covered} for row in rows]
-    return _complete(rows, data)
-
-
-def _complete(rows: list[dict[str, Any]], data: Path) -> list[dict[str, Any]]:
-    return complete_rows(
-        rows, dataset=dataset_of(data), seeds=[0], baselines=BASELINES, oracles=ORACLES,
+    rows = complete_rows(
+        rows, dataset=dataset_of(options.data), seeds=[0], baselines=BASELINES, oracles=ORACLES,
         unknown={"seconds": "metric cpu_s has those of each method"},
     )  # fmt: skip
+    run.write("peer_scores", options.split, config={"weights": card.__dict__, "data_plan": plan}, rows=rows)
 
 
 def _row(method: str, each: list[Scores], rooms: list[str]) -> dict[str, Any]:

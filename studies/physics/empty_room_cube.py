@@ -7,15 +7,9 @@ from mmweaver.core.records import CameraIntrinsics, FreeSpace, Plane, RgbdPhoto,
 HALF_M = 4.0
 
 
-def empty_room(*, floor_z_m: float, has_floor: bool = True, wall_y_m: float | None = None) -> Scene:
-    """A concrete floor at `floor_z_m` (below the radar, so negative) and a plasterboard wall `wall_y_m` ahead.
-
-    Without a floor its plane is set far below, as a scene always has one.
-    """
-    floor = _plane(
-        "floor", (0.0, HALF_M, floor_z_m if has_floor else floor_z_m - 100), (0, 0, 1), (1, 0, 0), "concrete"
-    )
-    planes = [floor]
+def empty_room(*, floor_z_m: float, wall_y_m: float | None = None) -> Scene:
+    """A concrete floor at `floor_z_m` (below the radar, so negative) and a plasterboard wall `wall_y_m` ahead."""
+    planes = [_plane("floor", (0.0, HALF_M, floor_z_m), (0, 0, 1), (1, 0, 0), "concrete")]
     if wall_y_m is not None:
         planes.append(_plane("wall", (0.0, wall_y_m, 0.0), (0, -1, 0), (1, 0, 0), "plasterboard"))
     corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
@@ -38,7 +32,7 @@ def empty_room(*, floor_z_m: float, has_floor: bool = True, wall_y_m: float | No
         face_material=np.array(kinds, np.int32),
         material_names=tuple(plane.material for plane in planes),
         planes=tuple(planes),
-        floor_z_m=float(floor.centre_m[2]),
+        floor_z_m=floor_z_m,
         free_space=FreeSpace(
             x_m=np.array([-1.0, 1.0]), y_m=np.array([1.0, 3.0]), is_free=everywhere, is_seen=everywhere
         ),

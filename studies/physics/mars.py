@@ -29,22 +29,15 @@ from mmweaver.core.boards import IWR1443_MARS
 from mmweaver.core.firmware_settings import FIRMWARE, FirmwareSettings
 from mmweaver.core.records import AdcCube, PointCloud
 from mmweaver.core.seeding import stream
-from mmweaver.motion.micro_motion import STILL, MicroMotionSettings
 from mmweaver.propagation.board_effects import BoardEffects
 from mmweaver.propagation.body_model import ScatteringBody
 from mmweaver.propagation.ray_traced import Simulator
-from mmweaver.propagation.receiver import Impairments
-from mmweaver.propagation.skin_scattering import LAMBERT, SkinEcho
 from mmweaver.propagation.static_paths import AS_PUBLISHED
-from mmweaver.signal.cube import radar_cube, remove_static
 from mmweaver.signal.firmware import FirmwareCloud, firmware_points
-from mmweaver.signal.points import point_cloud
 from studies.manifest import StudyRun
 from studies.physics.cloud_scores import CloudScores, part_of, score
 from studies.physics.empty_room_cube import empty_room
-from studies.physics.joint_scatterers import run_joints
-from studies.physics.mars_data import FRAME_S, MarsStretch, read_mars
-from studies.physics.mars_pieces import as_published, body_height_m, cut, pose_of
+from studies.physics.mars_data import FRAME_S, MarsStretch, as_published, body_height_m, cut, pose_of, read_mars
 from studies.result_rows import complete_rows
 from studies.study import Reads
 
@@ -53,6 +46,7 @@ HEIGHTS_M = (0.2, 0.0, 0.1, 0.3, 0.4, 0.5, 0.6)  # the first is where the estima
 THRESHOLDS = (400, 2000)
 ELEVATIONS_DEG = (0.0, -12.0, -8.0, -4.0, 4.0, 8.0, 12.0)  # as far as boards were seen to be off (docs/board.md)
 PIECES_TO_ESTIMATE = 12
+NUM_POINTS = 800  # of the skin
 AGAIN_FRAMES, VELOCITY_WEIGHT_S = 10, 0.3  # at least a second later; how far velocities count in a pose's likeness
 Clouds = list[tuple[PointCloud, ...]]  # one tuple a piece, one cloud a sample
 
@@ -68,49 +62,6 @@ class Setup:
     height_m: float = 1.75
 
 
-@dataclass(frozen=True, kw_only=True)
-class MarsVariant:
-    """Changes of the simulator; the defaults are the simulator itself."""
-
-    impairments: Impairments = Impairments()  # noqa: RUF009 (frozen)
-    brighter_db: float = 0.0
-    skin: SkinEcho = SkinEcho()  # noqa: RUF009 (frozen)
-    motions: MicroMotionSettings = MicroMotionSettings()  # noqa: RUF009 (frozen)
-    has_floor: bool = True
-    wall_m: float | None = None
-    has_ghosts: bool = True
-    at_joints: bool = False  # a point at each joint is all the body there is
-    smoothing_frames: float = 1.0  # of the Kinect's joints, which tremble by a centimetre from frame to frame
-    joint_noise_m: float = 0.0
-    num_points: int = 800
-    chain: str = "firmware"
-    grouped: bool = False
-
-
-VARIANTS: dict[str, MarsVariant] = {
-    "simulator": MarsVariant(),
-    "no_thermal_noise": MarsVariant(impairments=Impairments(thermal_noise=False)),
-    "no_phase_noise": MarsVariant(impairments=Impairments(phase_noise_dbc_per_hz=None, chirp_jitter_s=0.0)),
-    "body_6_db_fainter": MarsVariant(brighter_db=-6.0),
-    "body_6_db_brighter": MarsVariant(brighter_db=6.0),
-    "skin_of_lambert": MarsVariant(skin=LAMBERT),
-    "skin_slope_0_20": MarsVariant(skin=SkinEcho(slope=0.20)),
-    "joints_not_smoothed": MarsVariant(smoothing_frames=0.0),
-    "skin_without_diffuse_part": MarsVariant(skin=SkinEcho(albedo=0.0)),
-    "no_micro_motion": MarsVariant(motions=STILL),
-    "skin_of_200_points": MarsVariant(num_points=200),
-    "skin_of_3200_points": MarsVariant(num_points=3200),
-    "no_floor_bounce": MarsVariant(has_floor=False),
-    "wall_at_3_m_behind": MarsVariant(wall_m=3.0),
-    "wall_at_3_m_behind_no_ghosts": MarsVariant(wall_m=3.0, has_ghosts=False),
-    "points_at_the_joints": MarsVariant(at_joints=True),
-    "arms_and_legs_like_the_trunk": MarsVariant(skin=SkinEcho(arms_db=0.0, legs_db=0.0)),
-    "joint_noise_1_cm": MarsVariant(joint_noise_m=0.01),
-    "our_cfar": MarsVariant(chain="cfar"),
-    "peak_grouping": MarsVariant(grouped=True),
-}
-
-
 def settings_of(setup: Setup) -> FirmwareSettings:
     """The settings of the firmware with the estimated threshold."""
     base = FIRMWARE["iwr1443_mars"]
@@ -118,57 +69,27 @@ def settings_of(setup: Setup) -> FirmwareSettings:
     return replace(base, range_cfar=replace(base.range_cfar, threshold=setup.threshold))
 
 
-def simulate(pieces: list[MarsStretch], setup: Setup, variant: MarsVariant, seed: int = 0) -> list[AdcCube]:
-    """ADC samples of each piece, in a room of a floor and perhaps a wall behind the person."""
+def simulate(pieces: list[MarsStretch], setup: Setup, seed: int = 0) -> list[AdcCube]:
+    """ADC samples of each piece, in a room of a floor alone."""
     feet_m = min(float(piece.joints_m[..., 2].min()) for piece in pieces) + setup.shift_m[2]
-    simulator = Simulator(
-        empty_room(floor_z_m=feet_m - 0.04, has_floor=variant.has_floor, wall_y_m=variant.wall_m),
-        IWR1443_MARS,
-        variant.impairments,
-        propagation=AS_PUBLISHED,
-    )
-    if not variant.has_ghosts:
-        simulator.room.reflectors = []
-    gain, skin = 10 ** (variant.brighter_db / 10), variant.skin
-    echo = replace(skin, reflectivity=skin.reflectivity * gain, albedo=skin.albedo * gain)
+    simulator = Simulator(empty_room(floor_z_m=feet_m - 0.04), IWR1443_MARS, propagation=AS_PUBLISHED)
     adcs = []
-    for index, piece in enumerate(pieces):
-        rng = stream(seed, "joint noise", index)
-        noisy = replace(
-            piece,
-            joints_m=smoothed(piece.joints_m, variant.smoothing_frames)
-            + variant.joint_noise_m * rng.standard_normal(piece.joints_m.shape),
-        )
-        pose, num = pose_of(noisy, setup.shift_m, setup.height_m), int(piece.frame[-1]) + 1
-        if variant.at_joints:
-            adc = run_joints(simulator, pose, num_frames=num, seed=seed, motions=variant.motions, brighter=gain)
-        else:
-            points = variant.num_points
-            adc = simulator.run(
-                pose, num_frames=num, seed=seed, num_points=points, echo=echo, motions=variant.motions
-            ).adc  # fmt: skip
-        adcs.append(adc)
+    for piece in pieces:
+        pose = pose_of(replace(piece, joints_m=smoothed(piece.joints_m)), setup.shift_m, setup.height_m)
+        adcs.append(simulator.run(pose, num_frames=int(piece.frame[-1]) + 1, seed=seed, num_points=NUM_POINTS).adc)
     return adcs
 
 
-def smoothed(joints_m: np.ndarray, frames: float) -> np.ndarray:
-    """Gaussian smoothing over time, of a width in frames."""
-    return gaussian_filter1d(joints_m, frames, axis=0, mode="nearest") if frames else joints_m
+def smoothed(joints_m: np.ndarray) -> np.ndarray:
+    """The Kinect's joints tremble by a centimetre from frame to frame: Gaussian smoothing of a frame."""
+    return gaussian_filter1d(joints_m, 1.0, axis=0, mode="nearest")
 
 
-def detect(adcs: list[AdcCube], pieces: list[MarsStretch], setup: Setup, variant: MarsVariant) -> Clouds:
+def detect(adcs: list[AdcCube], pieces: list[MarsStretch], setup: Setup) -> Clouds:
     """Detections of the firmware's chain at the recorded frames, cropped to the box of the recordings."""
-    settings = settings_of(setup)
-    if variant.grouped:
-        settings = replace(settings, group_range=True, group_doppler=True)
-    clouds: Clouds = []
+    settings, clouds = settings_of(setup), []
     for adc, piece in zip(adcs, pieces, strict=True):
-        louder = received(adc, setup)
-        if variant.chain == "cfar":
-            cloud = point_cloud(remove_static(radar_cube(louder)), max_points_per_frame=64)
-        else:
-            cloud = firmware_points(louder, settings)
-        cloud = as_published(cloud)
+        cloud = as_published(firmware_points(received(adc, setup), settings))
         clouds.append(tuple(part_of(cloud, int(frame)) for frame in piece.frame))
     return clouds
 
@@ -194,33 +115,26 @@ def calibrate(pieces: list[MarsStretch], report: Callable[[str], object] = print
     setup = Setup(height_m=round(body_height_m(pieces), 2), shift_m=(0.0, 0.0, HEIGHTS_M[0]))
     setup = _own_levels(pieces, _centred(pieces, setup, real), real)
     x, y, _ = setup.shift_m
-    setup = _best([replace(setup, shift_m=(x, y, z)) for z in HEIGHTS_M], pieces, real, report)
-    setup = _elevated(pieces, setup, real, report)
+    tried = [replace(setup, shift_m=(x, y, z)) for z in HEIGHTS_M]
+    setup = _best(tried, [_simulated(pieces, one) for one in tried], real, report)
+    adcs, tried = simulate(pieces, setup), [replace(setup, elevation_deg=degrees) for degrees in ELEVATIONS_DEG]
+    setup = _best(tried, [detect(adcs, pieces, one) for one in tried], real, report)
     setup = _own_levels(pieces, _centred(pieces, setup, real), real)
     report(f"estimated: {setup}")
     return setup
 
 
-def _best(tried: list[Setup], pieces: list[MarsStretch], real: Clouds, report: Callable[[str], object]) -> Setup:
-    distance = [score(_simulated(pieces, setup, MarsVariant()), real).value("chamfer_m") for setup in tried]
+def _best(tried: list[Setup], clouds: list[Clouds], real: Clouds, report: Callable[[str], object]) -> Setup:
+    """The setup whose clouds are nearest to the recorded ones."""
+    distance = [score(one, real).value("chamfer_m") for one in clouds]
     for setup, found in zip(tried, distance, strict=True):
         report(f"Chamfer {found:.3f} m: {setup}")
     return tried[int(np.argmin(distance))]
 
 
-def _elevated(pieces: list[MarsStretch], setup: Setup, real: Clouds, report: Callable[[str], object]) -> Setup:
-    """The phase of the elevated transmitter, of one simulation."""
-    adcs = simulate(pieces, setup, MarsVariant())
-    tried = [replace(setup, elevation_deg=degrees) for degrees in ELEVATIONS_DEG]
-    distance = [score(detect(adcs, pieces, one, MarsVariant()), real).value("chamfer_m") for one in tried]
-    for one, found in zip(tried, distance, strict=True):
-        report(f"Chamfer {found:.3f} m: elevation {one.elevation_deg:+g} degrees")
-    return tried[int(np.argmin(distance))]
-
-
 def _centred(pieces: list[MarsStretch], setup: Setup, real: Clouds) -> Setup:
     """The position of the radar shifted sideways and in depth until the centroids agree."""
-    right, ahead, _ = _centroid_offset(_simulated(pieces, setup, MarsVariant()), real)
+    right, ahead, _ = _centroid_offset(_simulated(pieces, setup), real)
     x, y, z = setup.shift_m
     return replace(setup, shift_m=(round(float(x - right), 3), round(float(y - ahead), 3), z))
 
@@ -237,8 +151,8 @@ def _middle(cloud: PointCloud) -> np.ndarray:
 
 
 def _own_levels(pieces: list[MarsStretch], setup: Setup, real: Clouds) -> Setup:
-    adcs = simulate(pieces, setup, MarsVariant())
-    return levels(setup, real, lambda tried: detect(adcs, pieces, tried, MarsVariant()))
+    adcs = simulate(pieces, setup)
+    return levels(setup, real, lambda tried: detect(adcs, pieces, tried))
 
 
 def levels(setup: Setup, real: Clouds, detected: Callable[[Setup], Clouds]) -> Setup:
@@ -316,7 +230,7 @@ def same_pose_oracle(pieces: list[MarsStretch], stretches: list[MarsStretch]) ->
 
 def _posture(stretch: MarsStretch) -> np.ndarray:
     """Joints and, weighted by a third of a second, their velocities (sample, 132)."""
-    joints_m = smoothed(stretch.joints_m, 1.0)
+    joints_m = smoothed(stretch.joints_m)
     velocity_mps = np.gradient(joints_m, stretch.frame * FRAME_S, axis=0)
     both = np.concatenate([joints_m, VELOCITY_WEIGHT_S * velocity_mps], axis=1)
     return both.reshape(len(both), -1)
@@ -331,12 +245,18 @@ def _points(place_m: np.ndarray) -> PointCloud:
 
 
 # the study ----------------------------------------------------------------------------------------------------------
-def measure(data: Path, run: StudyRun, report: Callable[[str], object] = print) -> dict[str, CloudScores]:
-    """Estimates on `validate`, scores everything on `test`, and writes results/mars/*.json. Returns the scores."""
-    validate, test = read_mars(data, "validate"), read_mars(data, "test")
-    began = time.perf_counter()
-    setup = calibrate(cut(validate, PIECE_FRAMES, PIECES_TO_ESTIMATE), report)
-    pieces = cut(test, PIECE_FRAMES, PIECES)
+def measure(data: Path, run: StudyRun, split: str, report: Callable[[str], object] = print) -> dict[str, CloudScores]:
+    """Estimates on `validate`, scores pieces of the split that estimated nothing, writes results; returns the scores.
+
+    All of `validate`, a part of `test` spread evenly.
+    """
+    began, validate = time.perf_counter(), read_mars(data, "validate")
+    used = cut(validate, PIECE_FRAMES, PIECES_TO_ESTIMATE)
+    setup = calibrate(used, report)
+    taken = {id(piece.clouds[0]) for piece in used}
+    stretches = validate if split == "validate" else read_mars(data, split)
+    pieces = cut(stretches, PIECE_FRAMES, MOST_PIECES if split == "validate" else PIECES)
+    pieces = [piece for piece in pieces if id(piece.clouds[0]) not in taken]
     real: Clouds = [piece.clouds for piece in pieces]
     mean = round(np.mean([len(cloud.x_m) for stretch in validate for cloud in stretch.clouds]))
     methods: dict[str, Callable[[], Clouds]] = {
@@ -344,41 +264,16 @@ def measure(data: Path, run: StudyRun, report: Callable[[str], object] = print) 
         "baseline_random_on_body": partial(surface_baseline, pieces, setup, mean),
         "baseline_random_real_frame": partial(random_frame_baseline, pieces, validate),
         "oracle_neighbouring_frame": partial(neighbour_oracle, pieces),
-        "oracle_same_pose_again": partial(same_pose_oracle, pieces, test),
+        "oracle_same_pose_again": partial(same_pose_oracle, pieces, stretches),
+        "simulator": partial(_simulated, pieces, setup),
     }
-    for name, variant in VARIANTS.items():
-        methods[name] = partial(_simulated, pieces, setup, variant)
-    scores: dict[str, CloudScores] = {}
-    for name, method in methods.items():
-        started = time.perf_counter() if name != "simulator" else began
-        scores[name] = score(method(), real)
-        report(f"{name:28s} {scores[name].line()}")
-        _write(run, name, setup, data, scores, seconds=time.perf_counter() - started)
-    return scores
-
-
-def measure_on_validate(data: Path, run: StudyRun, report: Callable[[str], object] = print) -> dict[str, CloudScores]:
-    """The simulator, baselines and oracles on the sections of `validate` that estimated nothing. Returns the scores."""
-    began, validate = time.perf_counter(), read_mars(data, "validate")
-    used = cut(validate, PIECE_FRAMES, PIECES_TO_ESTIMATE)
-    setup = calibrate(used, report)
-    taken = {id(piece.clouds[0]) for piece in used}
-    pieces = [piece for piece in cut(validate, PIECE_FRAMES, MOST_PIECES) if id(piece.clouds[0]) not in taken]
-    real: Clouds = [piece.clouds for piece in pieces]
-    mean = round(np.mean([len(cloud.x_m) for stretch in validate for cloud in stretch.clouds]))
-    methods: dict[str, Callable[[], Clouds]] = {
-        "baseline_centroid": partial(centroid_baseline, pieces, setup),
-        "baseline_random_on_body": partial(surface_baseline, pieces, setup, mean),
-        "oracle_neighbouring_frame": partial(neighbour_oracle, pieces),
-        "oracle_same_pose_again": partial(same_pose_oracle, pieces, validate),
-        "simulator": partial(_simulated, pieces, setup, VARIANTS["simulator"]),
-    }
+    if split == "validate":
+        del methods["baseline_random_real_frame"]  # of the same recordings
     scores: dict[str, CloudScores] = {}
     for name, method in methods.items():
         scores[name] = score(method(), real)
         report(f"{name:28s} {scores[name].line()}")
-        seconds = time.perf_counter() - began
-        _write(run, name, setup, data, scores, seconds=seconds, split="validate")
+        _write(run, name, setup, data, scores, seconds=time.perf_counter() - began, split=split)
     return scores
 
 
@@ -387,13 +282,13 @@ def mars_digests(data: Path, split: str = "test") -> dict[str, str]:
     return {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in sorted(data.glob(f"*_{split}.csv"))}
 
 
-def _simulated(pieces: list[MarsStretch], setup: Setup, variant: MarsVariant) -> Clouds:
-    return detect(simulate(pieces, setup, variant), pieces, setup, variant)
+def _simulated(pieces: list[MarsStretch], setup: Setup) -> Clouds:
+    return detect(simulate(pieces, setup), pieces, setup)
 
 
 def _write(
     run: StudyRun, name: str, setup: Setup, data: Path, scores: dict[str, CloudScores], *, seconds: float,
-    split: str = "test",
+    split: str,
 ) -> None:  # fmt: skip
     row: dict[str, Any] = {
         "dataset": {"name": f"MARS subject 1, {split}", "sha256": mars_digests(data, split)},
@@ -402,8 +297,7 @@ def _write(
         "seconds": {"all": round(seconds, 1)},
         "metrics": scores[name].metrics(floor=scores["baseline_centroid"]),
     }
-    variant = asdict(VARIANTS[name]) if name in VARIANTS else None
-    config = {"estimated_on_validate": asdict(setup), "variant": variant, "frames_a_piece": PIECE_FRAMES}
+    config = {"estimated_on_validate": asdict(setup), "frames_a_piece": PIECE_FRAMES}
     run.write("mars" if split == "test" else f"mars_{split}", name, config=config, rows=complete_rows([row]))
 
 
@@ -413,4 +307,4 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
-    (measure if options.split == "test" else measure_on_validate)(options.data, run)
+    measure(options.data, run, options.split)

@@ -7,7 +7,7 @@
 `role`: a data set on which the general method was developed; `blind`, one that was scored once after a commit had fixed
 the method and never before; `frozen`, one that was scored once after such a commit, though earlier methods had seen it.
 Each is scored alone, with no recording at all, and adapted, when the same recordings served as `unlabelled`. MARS's
-recordings are cut into exercises as in `mars_exercises`. `--named REGEX --part WORDS` scores the recordings whose names
+recordings are cut into exercises. `--named REGEX --part WORDS` scores the recordings whose names
 begin so, as a row of its own. Persons or places are held out of nothing: no recorded label trains anything.
 """
 
@@ -28,7 +28,6 @@ from mmweaver.recognition.task_file import RecognitionTask, read_task
 from mmweaver.recognition.train_recogniser import fitted
 from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindows, generated_windows
 from studies.manifest import StudyRun, content_of
-from studies.motion.mars_exercises import EXERCISES
 from studies.schema import metric
 from studies.study import Reads
 
@@ -39,6 +38,19 @@ WORDS = {
     "recording": "balanced accuracy of the mean vote of a recording",
 }
 SPLITS = ("validate", "test")
+# rows of each exercise in MARS's frames of splits validate and test
+EXERCISES = {
+    "left upper limb extension": ((0, 178), (0, 148)),
+    "right upper limb extension": ((214, 431), (196, 428)),
+    "both upper limbs extension": ((432, 673), (443, 668)),
+    "left front lunge": ((674, 934), (669, 927)),
+    "right front lunge": ((935, 1128), (928, 1120)),
+    "squat": ((1129, 1393), (1121, 1384)),
+    "left side lunge": ((1394, 1620), (1385, 1623)),
+    "right side lunge": ((1635, 1847), (1624, 1835)),
+    "left limb extension": ((1848, 2100), (1836, 2090)),
+    "right limb extension": ((2172, 2366), (2110, 2351)),
+}  # fmt: skip
 
 
 def recordings_of(name: str, folder: Path, task: RecognitionTask) -> list[PointRecording]:
@@ -46,7 +58,7 @@ def recordings_of(name: str, folder: Path, task: RecognitionTask) -> list[PointR
     if name != "mars_exercises":
         return read_task_recordings(folder, task.recordings)
     found: list[PointRecording] = []
-    for place, split in enumerate(SPLITS, start=1):
+    for place, split in enumerate(SPLITS):
         table = np.loadtxt(folder / f"radar_data_{split}.csv", delimiter=",", skiprows=1)
         frame = table[:, 0].astype(int)
         number = np.unique(frame)

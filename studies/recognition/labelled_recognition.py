@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import t as student
 
+from mmweaver.core.seeding import stream
 from mmweaver.recognition.point_recordings import windows_of
 from mmweaver.recognition.recogniser import recognition_features
 from mmweaver.recognition.scoring import balanced_accuracy
@@ -27,12 +28,18 @@ from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindo
 from mmweaver.recognition.tree_ensemble import joined_trees
 from studies.manifest import StudyRun, content_of
 from studies.recognition.blind_recognition import add_task_options, task_data
-from studies.recognition.zero_shot_curve import chosen_recordings
 from studies.schema import metric
 
 EACH, SEEDS = (0, 1, 5, 20), tuple(range(10, 40))  # 0 to 9 were drawn before, and left open what five are worth
 TREES = 150
 TRAINING = {"mhomeges": "80[0-5]_", "mars_exercises": ".* validate"}  # how names of recordings that may train begin
+
+
+def chosen_recordings(labels: np.ndarray, each: int, seed: int) -> np.ndarray:
+    """Indices of the training recordings (of these labels): `each` of every activity, at random."""
+    rng = stream(seed, "real recordings", each)
+    kinds = np.unique(labels)
+    return np.concatenate([rng.permutation(np.flatnonzero(labels == kind))[:each] for kind in kinds]).astype(int)
 
 
 def accuracy(

@@ -38,10 +38,6 @@ MODELS = {
     "model_cards/paper_power.md": CardScores(
         name="paper_power", source="results/learned_scores/paper_power.json", row="paper_power", metrics=SSIM, **ROOMS
     ),
-    "model_cards/signal_diffusion.md": CardScores(
-        name="signal_diffusion", source="results/diffusion_scores/test_room.json", row="diffusion_from_noise",
-        metrics=SSIM, **ROOMS,
-    ),
     "model_cards/segmenter.md": CardScores(
         name="segmenter", source="model_cards/segmenter.json", row="unseen_kinds.network", **ROOMS,
         metrics={"miou": "Mean intersection over union", "right": "Cells right"},
@@ -58,7 +54,7 @@ MODELS = {
         metrics={"window": "Balanced accuracy of windows of 2 s", "recording": "Balanced accuracy of recordings"},
     ),
     "model_cards/motiongpt_small.md": CardScores(
-        name="motiongpt_small", source="results/motiongpt/motiongpt_small.json", row="generated, words never trained",
+        name="motiongpt_small", source="model_cards/motiongpt_small.json", row="words_never_trained",
         dataset="mmweaver-activities", dataset_name="Twelve activities in words never trained",
         metrics={"r_precision_1": "R-precision, first of twelve", "r_precision_3": "R-precision, first three"},
     ),

@@ -91,8 +91,6 @@ def _edges_percent(metric: Mapping[str, Any], digits: str) -> str:
 # {name: text of a metric}; for what no number says
 _SPECIAL: dict[str, Callable[[Mapping[str, Any], str], str]] = {
     "edges_percent": _edges_percent,
-    "recorded": lambda metric, digits: ", ".join(f"{value:.3g}" for value in metric["recorded_5_50_95"]),
-    "centimetres": lambda metric, digits: f"{100 * metric['value']:.1f} cm",
     "split": lambda metric, digits: {"train": "what it trained on", "test_room": "unseen kinds"}[metric["value"]],
 }
 

@@ -11,7 +11,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.motion.language.activities import BODY, HANDS
 from studies.network.ablation_variants import VARIANTS, WHOLE
-from studies.report.cell_formats import cell, line, markdown, number
+from studies.report.cell_formats import markdown, number
 from studies.report.table_layouts import contexts_of, records_of
 
 OURS = ("mmw", "mmw_keep_noise")  # what the baseline codecs are compared with
@@ -164,27 +164,3 @@ def activities_table(results: Path) -> str:
         for activity in (*BODY, *HANDS)
     ]
     return markdown(["activity", "example", "natural time, s", "can be counted"], lines)
-
-
-GROUPS = (("zero_shot/blind", ("blind",)), ("zero_shot/development", ("development", "first half", "second half")))
-VOTES = ("window", "three_windows", "recording")
-
-
-def zero_shot_table(results: Path) -> str:
-    """One row a recogniser and group of recordings, then the confusion of windows."""
-    lines, last = [], {}
-    for source, names in GROUPS:
-        rows = contexts_of(results, (source,))
-        for name, row in zip(names, rows, strict=False):
-            scores = [cell(f"{{metrics.{vote}:interval.3}}", row) for vote in VOTES]
-            title = name if row is rows[0] else f"*{name}*"
-            chance = cell("{metrics.window.baseline.chance:.2f}", row)
-            lines.append([title, str(row["dataset"]["recordings"]), *scores, chance])
-        last = rows[0]
-    text = [markdown(["recogniser", "recordings", "windows of 2 s", "6 s", "a recording", "chance"], lines)]
-    kinds = last["classes"]
-    text += ["", "Windows of 2 s after development, true in rows, recognised in columns:", ""]
-    text += [line("", *kinds), line(*["---"] * (1 + len(kinds)))]
-    confusion = last["metrics"]["window"]["confusion"]
-    text += [line(kind, *map(str, counts)) for kind, counts in zip(kinds, confusion, strict=True)]
-    return "\n".join(text)

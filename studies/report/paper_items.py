@@ -27,7 +27,7 @@ class PaperItem:
         ours, baseline, oracle: templates of the row (`cell_formats`); of that of `baseline_source` where it is given.
         reading: what a reader may conclude.
         study: the study that measures it, with options.
-        missing: why there is no number of ours; `ours` then says what there is instead, if anything.
+        missing: why no result stands for it; `ours`, `baseline` and `oracle` then say what there is instead.
     """
 
     name: str
@@ -52,7 +52,7 @@ class PaperItem:
         """A line of the table. Raises InputError where the result lacks the row or a field of it."""
         command = f"`{self.command}`" if self.command else "-"
         if self.missing:
-            return [self.item, self.paper, self.ours or "none", "-", "-", self.missing, command]
+            return [self.item, self.paper, self.ours or "none", self.baseline, self.oracle, self.missing, command]
         row = self._row(results, self.source)
         other = self._row(results, self.baseline_source) if self.baseline_source else row
         templates = ((self.ours, row), (self.baseline, other), (self.oracle, row))

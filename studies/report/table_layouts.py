@@ -43,7 +43,6 @@ class RowTable:
         key: path of the field that names a row.
         before: lines of comparisons before the rows of each data set, as (label, path in a metric, such as
             "baseline.zeros"); templates then apply to that score in place of the value.
-        footer: lines that are not measured.
     """
 
     sources: tuple[str, ...]
@@ -51,12 +50,11 @@ class RowTable:
     labels: Mapping[str, str] = field(default_factory=dict)
     key: str = "method"
     before: tuple[tuple[str, str], ...] = ()
-    footer: tuple[tuple[str, ...], ...] = ()
     missing: str = "-"
 
     def render(self, results: Path) -> str:
         lines = [[cell(template, one, self.missing) for _, template in self.columns] for one in self._lines(results)]
-        return markdown([head for head, _ in self.columns], lines + [list(line) for line in self.footer])
+        return markdown([head for head, _ in self.columns], lines)
 
     def _lines(self, results: Path) -> Iterator[Context]:
         rows = contexts_of(results, self.sources)
@@ -89,40 +87,20 @@ def _compared(row: Context, path: str) -> dict[str, Any]:
 
 @dataclass(frozen=True, kw_only=True)
 class MetricTable:
-    """A line for each metric of each row; templates see the metric as `metric`, the row's fields, and `label`.
-
-    Attributes:
-        lines: (metric, label), or (metric, label, columns) where its templates differ; None for all metrics.
-    """
+    """A line for each (metric, label) of each row; templates see the metric as `metric`, the row's fields, `label`."""
 
     sources: tuple[str, ...]
     columns: Columns
-    lines: tuple[tuple[Any, ...], ...] | None = None
+    lines: tuple[tuple[str, str], ...]
     missing: str = ""
 
     def render(self, results: Path) -> str:
         lines = []
         for row in contexts_of(results, self.sources):
-            for name, label, *own in self.lines or tuple((name, name) for name in row["metrics"]):
-                metric = row["metrics"][name]
-                context = {**row, "metric": metric, "name": name, "label": label, **_words(name, metric)}
-                templates = own[0] if own else tuple(template for _, template in self.columns)
-                lines.append([cell(template, context, self.missing) for template in templates])
+            for name, label in self.lines:
+                context = {**row, "metric": row["metrics"][name], "label": label}
+                lines.append([cell(template, context, self.missing) for _, template in self.columns])
         return markdown([head for head, _ in self.columns], lines)
-
-
-UNITS = ("mps2", "mps", "hz", "deg", "m", "s")
-
-
-def _words(name: str, metric: Mapping[str, Any]) -> dict[str, str]:
-    """Name without its unit, the unit after a comma or a space, and on which side of the recorded spread it lies."""
-    stem, _, unit = name.rpartition("_")
-    low = metric.get("recorded_5_50_95", [0.0])[0]
-    outside = "" if metric.get("inside", True) else "below" if metric["value"] < low else "above"
-    return {
-        "words": (stem if unit in UNITS else name).replace("_", " "), "outside": outside,
-        "space_unit": f" {metric['unit']}" if metric["unit"] else "",
-    }  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)

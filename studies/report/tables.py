@@ -8,7 +8,6 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from studies.report.board_tables import BOARDS
 from studies.report.computed_tables import (
     ablation_table,
     activities_table,
@@ -16,20 +15,17 @@ from studies.report.computed_tables import (
     codec_margins_table,
     codecs_table,
     statistics_table,
-    zero_shot_table,
 )
-from studies.report.learned_tables import LEARNED
 from studies.report.paper_items import paper_table
 from studies.report.table_layouts import MatrixTable, MetricTable, PivotTable, RowTable
-from studies.report.zero_shot_tables import CURVE_CELLS, ZERO_SHOT
 
-SCORES = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
+FIDELITY_SCORES = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
 FIDELITY = RowTable(
     sources=tuple(f"field_fidelity/{name}" for name in ("inr_paper", "inr_smooth_short", "scatterers")),
     before=(("*zeros*", "baseline.zeros"), ("*static_mean*", "baseline.static_mean"),
             ("*other realization*", "oracle.realization"), ("*noise_free*", "oracle.noise_free")),
     columns=(("signal", "{dataset.name}"), ("method", "{label}"), ("values", "{size.values:,}"),
-             ("fit CPU s", "{seconds.fit:.0f}"), *((name, f"{{metrics.{name}:number}}") for name in SCORES)),
+             ("fit CPU s", "{seconds.fit:.0f}"), *((name, f"{{metrics.{name}:number}}") for name in FIDELITY_SCORES)),
     missing="",
 )  # fmt: skip
 FINER = ("1.5", "2", "3", "4")
@@ -52,11 +48,6 @@ SAMPLING_RADIUS = PivotTable(
     cells={name: ((head, "{metrics.nmse_db:number}"),) for name, head in RADIUS_COLUMNS.items()},
     order=tuple(("sampled_places", str(radius)) for radius in range(1, 8)),
 )
-LOSSLESS = RowTable(
-    sources=("lossless_codecs/*",),
-    columns=(("recording", "{dataset.name}"), ("codec", "{record.method}"), ("bytes", "{size.bytes:,}"),
-             ("of the raw words", "{metrics.share:percent.1}"), ("CPU s", "{seconds.cpu:.2f}")),
-)  # fmt: skip
 CODEC_SECONDS = PivotTable(
     sources=("codecs/mmw",), rows=(("signal", "{dataset.name}"),), across="{size.bytes_allowed}", sorts=True,
     head_template="{size.bytes_allowed:,} B", cell_template="{seconds.encode_cpu:.1f}",
@@ -95,45 +86,12 @@ DATASET_COST = MatrixTable(
         ("sequences_a_s_4_workers", "4 workers", "{metric:.1f}"),
     ),
 )  # fmt: skip
-CHECKSUMS_COST = MatrixTable(
-    sources=("benchmark/checksums",), corner="reading an epoch, CPU", missing="",
-    prefixes=(("with signals", "signals_"), ("geometry only", "geometry_only_")),
-    lines=(
-        ("first_epoch_cpu_s", "the first of a process: every file is hashed", "{metric:.2f} s"),
-        ("later_epoch_cpu_s", "each later one", "{metric:.2f} s"),
-        ("unchecked_epoch_cpu_s", "without checks (baseline)", "{metric:.2f} s"),
-        ("mb", "size of the data set", "{metric:.0f} MB"),
-    ),
-)  # fmt: skip
 REAL_ROOMS = RowTable(
     sources=("real_rooms/physics",),
     columns=(
         ("room", "{dataset.name}"), ("frames", "{n}"),
         ("person in place", "{metrics.frames_with_person_in_place:percent.0}"),
         ("a random bin", "{metrics.frames_with_person_in_place.baseline.random_bin:percent.0}"),
-    ),
-)  # fmt: skip
-PEOPLE_SCORES = (
-    ("nmse_active_db", "error energy, active cells (dB)"), ("nmse_moving_db", "error energy, moving cells (dB)"),
-    ("rd_ssim", "range-Doppler SSIM"), ("ra_ssim", "range-azimuth SSIM"), ("chamfer_m", "Chamfer of the points (m)"),
-    ("hausdorff_m", "Hausdorff of the points (m)"),
-)  # fmt: skip
-ARRANGEMENT = "{dataset.name} ({n})"
-MULTI_PERSON = MetricTable(
-    sources=("multi_person_scores/superposition",),
-    columns=(
-        ("arrangement (pairs)", ARRANGEMENT), ("score", "{label}"), ("plain sum (95 %)", "{metric:number_interval}"),
-        ("without the second", "{metric.baseline.without_second:number}"),
-        ("other noise", "{metric.oracle.other_noise:number}"),
-        ("other realization", "{metric.oracle.realization:number}"),
-    ),
-    lines=(
-        *PEOPLE_SCORES,
-        ("second_dimmed_db", "*occlusion dims the second by (dB)*",
-         (ARRANGEMENT, "{label}", "{metric:number_interval}", "", "", "")),
-        ("points_of_second", "*points a frame at the second*",
-         (ARRANGEMENT, "{label}", "{metric:number_interval}; with mutual occlusion {metric.oracle.mutual:number}",
-          "{metric.baseline.without_second:number}", "", "")),
     ),
 )  # fmt: skip
 AFFORDANCES = MatrixTable(
@@ -157,14 +115,6 @@ AFFORDANCES = MatrixTable(
         ("arms_clear", "arms too", "{metric:share.1}"),
     ),
 )  # fmt: skip
-REAL_PLACEMENTS = RowTable(
-    sources=("real_placements/depth",),
-    columns=(
-        ("room", "{dataset.name}"), ("floor against marked places", "{metrics.floor_error_m:centimetres}"),
-        ("placements clear", "{metrics.placements_clear:share.1}"), ("arms too", "{metrics.arms_clear:share.1}"),
-        ("refused", "{refused}"),
-    ),
-)  # fmt: skip
 MARS_COLUMNS = (
     ("chamfer_m", "Chamfer, m", "interval.3"), ("hausdorff_m", "Hausdorff, m", "fixed.2"),
     ("centroid_m", "centroid, m", "fixed.2"), ("extent_m", "extent, m", "fixed.3"), ("points", "points", "fixed.1"),
@@ -174,36 +124,13 @@ MARS_COLUMNS = (
 )  # fmt: skip
 MARS_ROWS = (
     "baseline_centroid", "baseline_random_on_body", "baseline_random_real_frame", "oracle_neighbouring_frame",
-    "oracle_same_pose_again", "simulator", "arms_and_legs_like_the_trunk", "body_6_db_brighter", "body_6_db_fainter",
-    "joint_noise_1_cm", "joints_not_smoothed", "no_floor_bounce", "no_micro_motion", "no_phase_noise",
-    "no_thermal_noise", "our_cfar", "peak_grouping", "points_at_the_joints", "skin_of_200_points",
-    "skin_of_3200_points", "skin_of_lambert", "skin_slope_0_20", "skin_without_diffuse_part", "wall_at_3_m_behind",
-    "wall_at_3_m_behind_no_ghosts",
+    "oracle_same_pose_again", "simulator",
 )  # fmt: skip
 MARS = RowTable(
     sources=("mars/*",), key="record.method", labels={name: name.replace("_", " ") for name in MARS_ROWS},
     columns=(("", "{label}"), *((head, f"{{metrics.{name}:{form}}}") for name, head, form in MARS_COLUMNS)),
 )  # fmt: skip
-MARS_VALIDATE_ROWS = (
-    "baseline_centroid", "baseline_random_on_body", "oracle_neighbouring_frame", "oracle_same_pose_again", "simulator",
-)  # fmt: skip
-MARS_VALIDATE = replace(
-    MARS, sources=("mars_validate/*",), labels={name: name.replace("_", " ") for name in MARS_VALIDATE_ROWS}
-)
-REALISM = MetricTable(
-    sources=("motion_realism/library",),
-    columns=(
-        ("of", "{dataset.name} ({n})"), ("figure", "{words}"), ("ours", "{metric:.3g}{space_unit}"),
-        ("recorded: 5 %, middle, 95 %", "{metric:recorded}"), ("", "{outside}"),
-    ),
-)  # fmt: skip
-MARS_EXERCISES = MetricTable(
-    sources=("mars_exercises/library",),
-    columns=(
-        ("exercise", "{dataset.name}"), ("figure", "{words}"), ("ours", "{metric:.2f}{space_unit}"),
-        ("recorded", "{metric.recorded:.2f}"), ("mean pose", "{metric.baseline.mean_pose:.2f}"),
-    ),
-)  # fmt: skip
+MARS_VALIDATE = replace(MARS, sources=("mars_validate/*",))
 KITML = MetricTable(
     sources=("kitml/reading",),
     columns=(("share", "{label}"), ("n", "{metric.n:,}"), ("value", "{metric:percent.1}"),
@@ -273,15 +200,6 @@ STRANGERS = MetricTable(
         ("approximated", "of all: a clause approximated or not shown, and said so"),
     ),
 )  # fmt: skip
-MOTIONGPT = RowTable(
-    sources=("motiongpt/*",),
-    columns=(
-        ("motions", "{dataset.name}"), ("first of 12", "{metrics.r_precision_1:percent_interval.0}"),
-        ("among first 3", "{metrics.r_precision_3:percent_interval.0}"),
-        ("bones stretch", "{metrics.bone_spread:percent.1}"),
-    ),
-    footer=(("chance", "8 %", "25 %", ""),),
-)  # fmt: skip
 BLIND = RowTable(
     sources=("blind_recognition/*",),
     columns=(
@@ -292,21 +210,17 @@ BLIND = RowTable(
         ("windows outside", "{distance.windows_outside:.2f}"),
     ),
 )  # fmt: skip
-ELSEWHERE = RowTable(
-    sources=("recognised_elsewhere/*",),
-    columns=(
-        ("strangers", "{dataset.name}"), ("windows", "{metrics.window:interval.2}"),
-        ("a recording", "{metrics.recording:interval.2}"), ("chance", "{metrics.window.baseline.chance:.2f}"),
-        ("windows outside", "{distance.windows_outside:.2f}"), ("`score` says", "{said}"),
-    ),
-)  # fmt: skip
+CURVE_CELL = "{metrics.window:.3f} ({metrics.window.lowest:.3f} to {metrics.window.highest:.3f})"
 LABELLED = PivotTable(
     sources=("labelled_recognition/*",),
     rows=(("task", "{dataset.name}"), ("recordings of each", "{real_recordings_each}")), across="{generated}",
-    cells={"False": CURVE_CELLS["False"],
-           "True": (*CURVE_CELLS["True"], ("difference", "{metrics.gain:signed_interval.3}"))},
+    cells={"False": (("without", CURVE_CELL),),
+           "True": (("with generated windows", CURVE_CELL), ("difference", "{metrics.gain:signed_interval.3}"))},
     missing="",
 )  # fmt: skip
+LABELLED_RADHAR = replace(
+    LABELLED, sources=("labelled_recognition/radhar",), rows=(("real recordings of each", "{real_recordings_each}"),)
+)
 
 ZERO_SHOT_POSE = RowTable(
     sources=("zero_shot_pose/mars_*",),
@@ -325,37 +239,144 @@ POSE_CURVE = RowTable(
         ("without, legs", "{metrics.centroid_legs.baseline.without_generated:.1f}"),
     ),
 )  # fmt: skip
-SAMPLED = RowTable(
-    sources=("sampled_recordings/*",),
-    columns=(
-        ("training", "{method}"), ("sequences", "{n}"), ("accuracy", "{metrics.accuracy:interval.2}"),
-        ("less the baseline", "{metrics.gain:interval.2}"),
-    ),
-)  # fmt: skip
-GAIN_BY_NETWORK = PivotTable(
-    sources=("recogniser_gain/few_recordings",), rows=(("training", "{method}"),), across="{network} {test}",
-    cell_template="{metrics.accuracy:interval.2}",
-)  # fmt: skip
-GAIN_BY_CLUTTER = replace(GAIN_BY_NETWORK, sources=("recogniser_gain/clutter",))
-POSE_GAIN = RowTable(
-    sources=("pose_gain/*",),
-    columns=(
-        ("test", "{test}"), ("sequences", "{n}"), ("mean pose (baseline)", "{metrics.root.baseline.mean_pose:.1f}"),
-        ("without generated", "{metrics.root.baseline.without_generated:.1f}"),
-        ("with generated", "{metrics.root:.1f}"),
-        ("mean pose, centroid", "{metrics.centroid.baseline.mean_pose:.1f}"),
-        ("without, centroid", "{metrics.centroid.baseline.without_generated:.1f}"),
-        ("with, centroid", "{metrics.centroid:.1f}"),
-    ),
-)  # fmt: skip
 
-FAULTS = RowTable(
-    sources=("injected_faults/*",),
+BOTH = (("ra_ssim", "RA"), ("rd_ssim", "RD"))
+SCORES = RowTable(
+    sources=("learned_scores/test_room",),
+    labels={
+        "zeros": "all zeros (baseline)",
+        "training_mean": "mean of the training rooms (baseline)",
+        "nearest_training_pose": "the nearest training pose's recording (baseline)",
+        "generic_room_physics": "physics in some other room (baseline)",
+        "wrong_photo": "the network, another room's photo (baseline)",
+        "weaver": "**the network**",
+        "physics_in_photographed_room": "physics in the photographed room",
+        "realization": "physics in the true room, other phases (oracle)",
+        "static_mean": "the ground truth's own static mean (needs a recording of it)",
+        "weaver_with_background": "**the network with a background recording**",
+        "realization_skin": "physics in the true room, its phases known (oracle of that)",
+    },
     columns=(
-        ("command", "`{dataset.name}`"), ("events", "{events}"),
-        *((head, f"{{metrics.{kind}:.0f}} of {{tried.{kind}}}") for kind, head in (
-            ("kill", "killed"), ("full", "disk full from there on"), ("once", "one write fails"),
-            ("large", "no larger file"), ("disk", "small disk"))),
+        ("made by", "{label}"),
+        ("RA SSIM", "{metrics.ra_ssim:interval.2}"), ("RD SSIM", "{metrics.rd_ssim:interval.2}"),
+        ("RA, all cells", "{metrics.ra_ssim_all_cells:fixed.2}"),
+        ("RD, all cells", "{metrics.rd_ssim_all_cells:fixed.2}"),
+        ("RD difference, dB", "{metrics.rd_difference_db:fixed.2}"),
+        ("NMSE of magnitude, dB", "{metrics.magnitude_nmse_db:fixed.2}"),
+        ("antenna phase error, rad", "{metrics.antenna_phase_error_rad:fixed.2}"),
+        ("Chamfer, m", "{metrics.chamfer_m:fixed.2}"), ("Hausdorff, m", "{metrics.hausdorff_m:fixed.2}"),
+        ("energy, dB", "{metrics.energy_db:fixed.1}"), ("CPU, s", "{metrics.cpu_s:fixed.2}"),
+    ),
+)  # fmt: skip
+POWER = RowTable(
+    sources=("learned_scores/paper_power",),
+    labels={
+        "zeros": "all zeros (baseline)",
+        "generic_room_physics": "physics in some other room (baseline)",
+        "paper_power": "`paper_power`",
+        "paper_power_wrong_photo": "`paper_power`, shown another room's photo",
+        "paper_power_untrained": "`paper_power` before training: its coordinates alone",
+        "weaver": "`weaver`",
+        "physics_in_photographed_room": "physics, from the photo",
+        "realization": "the true room, random phases (oracle)",
+    },
+    columns=(("made by", "{label}"), ("rooms", "{n}"), *SCORES.columns[1:]),
+)
+SUMMARY = RowTable(
+    sources=("peer_scores/test_room", "learned_scores/test_room"),
+    labels={
+        "zeros": "all zeros (baseline)",
+        "generic_room_physics": "physics in some other room (baseline)",
+        "rf_genesis_as_released": "RF-Genesis as released",
+        "rf_genesis_repaired_photographed_room": "RF-Genesis repaired, in the photographed room",
+        "weaver": "the network, from the photo",
+        "physics_in_photographed_room": "physics, from the photo",
+        "realization": "the true room, random phases (oracle for a photo)",
+        "weaver_with_background": "the network, with a background recording",
+        "realization_skin": "the true room, its phases known (oracle for a recording)",
+    },
+    columns=(
+        ("made by", "{label}"), ("range-azimuth, SSIM", "{metrics.ra_ssim:interval.2}"),
+        ("range-Doppler, SSIM", "{metrics.rd_ssim:interval.2}"),
+    ),
+)  # fmt: skip
+PEERS = RowTable(
+    sources=("peer_scores/test_room",),
+    labels={
+        "zeros": "all zeros (baseline)",
+        "generic_room_physics": "our physics in some other room (baseline)",
+        "rf_genesis_as_released": "RF-Genesis, as released",
+        "rf_genesis_repaired_body": "RF-Genesis, repaired, body alone",
+        "rf_genesis_repaired_generic_room": "RF-Genesis, repaired, some other room",
+        "rf_genesis_repaired_photographed_room": "RF-Genesis, repaired, our photographed room",
+        "weaver": "our network, from the photo",
+        "physics_in_photographed_room": "our physics, from the photo",
+        "realization": "the true room, random phases (oracle)",
+    },
+    columns=(
+        ("made by", "{label}"), ("rooms", "{n}"), ("range-azimuth, SSIM", "{metrics.ra_ssim:interval.2}"),
+        ("range-Doppler, SSIM", "{metrics.rd_ssim:interval.2}"), ("cSSIM", "{metrics.cssim:fixed.3}"),
+        ("PSNR, dB", "{metrics.psnr_db:fixed.1}"), ("Chamfer, m", "{metrics.chamfer_m:fixed.2}"),
+        ("CPU, s", "{metrics.cpu_s:fixed.1}"),
+    ),
+)  # fmt: skip
+UNSEEN_METHODS = (
+    "nearest_training_pose", "weaver", "weaver_with_background", "physics_in_photographed_room", "realization",
+)  # fmt: skip
+UNSEEN = PivotTable(
+    sources=tuple(f"learned_scores/test_{split}" for split in ("room", "layout", "person", "activity")),
+    labels={"test_room": "kind of room", "test_layout": "layout of a seen kind", "test_person": "person",
+            "test_activity": "activity"},
+    rows=(("unseen", "{label}"), ("sequences", "{n}")), across="{method}",
+    cells={name: tuple((f"{name}, {view}", f"{{metrics.{metric}:{'interval' if name == 'weaver' else 'fixed'}.2}}")
+                       for metric, view in BOTH) for name in UNSEEN_METHODS},
+)  # fmt: skip
+OTHER_RADARS = PivotTable(
+    sources=tuple(f"other_radars/{name}" for name in ("hupr", "mmmesh", "iwr6843", "iwr1443_mars",
+                                                      "awr1843_100_frames")),
+    labels={"hupr": "preset `hupr`", "mmmesh": "`mmmesh`", "iwr6843": "`iwr6843`", "iwr1443_mars": "`iwr1443_mars`",
+            "awr1843_100_frames": "`awr1843`, 100 frames"},
+    rows=(("seen by", "{label}"), ("rooms", "{num_rooms}")), across="{method}",
+    cells={name: ((f"{name}, RA / RD", "{metrics.ra_ssim:fixed.2} / {metrics.rd_ssim:fixed.2}"),)
+           for name in ("zeros", "generic_room_physics", "weaver", "physics_in_photographed_room", "realization")},
+)  # fmt: skip
+PAPER_COLUMNS = (
+    ("cSSIM", "{metrics.cssim:fixed.3}"), ("PSNR, dB", "{metrics.psnr_db:fixed.1}"),
+    ("NMSE, all cells, dB", "{metrics.nmse_db:fixed.2}"), ("active, dB", "{metrics.nmse_active_db:fixed.2}"),
+    ("moving, dB", "{metrics.nmse_moving_db:fixed.2}"), ("RD SSIM", "{metrics.rd_ssim:fixed.2}"),
+    ("RA SSIM", "{metrics.ra_ssim:fixed.2}"),
+)  # fmt: skip
+PAPER = RowTable(sources=("paper_scores/test_room",), columns=(("method", "{method}"), *PAPER_COLUMNS))
+PAPER_FEW = RowTable(
+    sources=("paper_scores/few_train", "paper_scores/few_test_room"),
+    columns=(("method", "{method}"), ("evaluated on", "{dataset.split:split}"), *PAPER_COLUMNS),
+)
+
+
+def _gain(source: str) -> RowTable:
+    """Accuracy of the recogniser in an unseen room with the data of each method, and the gain over none."""
+    return RowTable(
+        sources=(source,),
+        columns=(
+            ("generated data of the room by", "{method}"), ("accuracy", "{metrics.accuracy:percent_interval.1}"),
+            ("gain, points", "{metrics.gain:points_interval.1}"),
+            ("log loss less by", "{metrics.log_loss_gain:signed_interval.3}"),
+        ),
+    )  # fmt: skip
+
+
+COST = MatrixTable(
+    sources=("benchmark/weaver",), corner="what", prefixes=(("measured", ""),),
+    lines=(
+        ("weaver_motion_to_cube_cpu_s", "network, motion to cube of 20 frames, room encoded, CPU", "{metric:.3f} s"),
+        ("physics_motion_to_cube_cpu_s", "physics (paths of second order), the same, room prepared, CPU",
+         "{metric:.3f} s"),
+        ("times_fewer_cpu_s_than_physics", "ratio of the two", "{metric:.1f}"),
+        ("first_order_motion_to_cube_cpu_s", "physics of first order, CPU", "{metric:.3f} s"),
+        ("sentence_to_motion_cpu_s", "sentence to motion, for either, CPU", "{metric:.3f} s"),
+        ("sentence_to_cube_wall_s", "network, sentence to cube, wall", "{metric:.2f} s"),
+        ("weaver_encode_room_cpu_s", "encoding the reconstructed room, once, CPU", "{metric:.2f} s"),
+        ("weaver_peak_memory_gb", "network, peak memory of the process", "{metric:.2f} GB"),
     ),
 )  # fmt: skip
 
@@ -363,26 +384,24 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "paper": paper_table, "sampling_radius": SAMPLING_RADIUS.render,
     "field_fidelity": FIDELITY.render, "super_resolution": SUPER_RESOLUTION.render,
     "codecs": codecs_table, "codec_margins": codec_margins_table, "codec_cuts": codec_cuts_table,
-    "lossless_codecs": LOSSLESS.render,
     "codec_seconds": CODEC_SECONDS.render,
     "physics": PHYSICS.render, "dataset_cost": DATASET_COST.render,
-    "checksums_cost": CHECKSUMS_COST.render,
-    "real_rooms": REAL_ROOMS.render, "real_placements": REAL_PLACEMENTS.render, "affordances": AFFORDANCES.render,
-    "multi_person": MULTI_PERSON.render, "signal_statistics": statistics_table, "mars": MARS.render,
+    "real_rooms": REAL_ROOMS.render, "affordances": AFFORDANCES.render,
+    "signal_statistics": statistics_table, "mars": MARS.render,
     "mars_validate": MARS_VALIDATE.render,
-    "motion_realism": REALISM.render,
-    "mars_exercises": MARS_EXERCISES.render,
     "kitml": KITML.render, "strangers": STRANGERS.render,
     **{name: table.render for name, table in UNREAD.items()},
-    "activities": activities_table, "captions_draws": CAPTIONS_DRAWS.render, "motiongpt": MOTIONGPT.render,
-    "zero_shot": zero_shot_table, **{name: table.render for name, table in ZERO_SHOT.items()},
-    "blind_recognition": BLIND.render, "recognised_elsewhere": ELSEWHERE.render,
+    "activities": activities_table, "captions_draws": CAPTIONS_DRAWS.render,
+    "blind_recognition": BLIND.render,
     "zero_shot_pose": ZERO_SHOT_POSE.render,
-    "pose_gain": POSE_GAIN.render, "pose_curve": POSE_CURVE.render,
-    "recogniser_gain": GAIN_BY_NETWORK.render, "recogniser_clutter": GAIN_BY_CLUTTER.render,
-    "sampled_recordings": SAMPLED.render,
-    "labelled_recognition": LABELLED.render,
-    "injected_faults": FAULTS.render,
+    "pose_curve": POSE_CURVE.render,
+    "labelled_recognition": LABELLED.render, "labelled_radhar": LABELLED_RADHAR.render,
     "ablation": ablation_table, "ablation_power": partial(ablation_table, folder="ablation_power"),
-    **{name: table.render for name, table in (*LEARNED.items(), *BOARDS.items())},
+    "peer_scores": PEERS.render,
+    "learned_scores": SCORES.render, "learned_summary": SUMMARY.render, "learned_unseen": UNSEEN.render,
+    "other_radars": OTHER_RADARS.render,
+    "paper_scores": PAPER.render, "paper_scores_few": PAPER_FEW.render,
+    "activity_gain": _gain("activity_gain/test_room").render,
+    "activity_gain_60": _gain("activity_gain/recordings_60").render,
+    "learned_cost": COST.render, "power_scores": POWER.render,
 }  # fmt: skip

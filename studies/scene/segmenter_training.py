@@ -2,9 +2,15 @@
 
 Recipe: 8 kinds of rooms for training, 4 others for the test; depth with the errors of a stereo camera, estimated
 gravity; crops, flips, other colours, light, holes (`segmenter_data`); AdamW with one-cycle schedule, weighted
-cross-entropy. One thread, one seed. From a clone: `python -m studies run train_segmenter`.
+cross-entropy. One thread, one seed.
+
+    python -m studies run segmenter_training --out segmenter.safetensors --log segmenter.json --work work/
+
+`--work` keeps the rooms and the state of the training: a run that was stopped continues from there.
 """
 
+import argparse
+import json
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
@@ -12,13 +18,23 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from jaxtyping import Float, Int
 
 from mmweaver.core.seeding import stream
+from mmweaver.core.shapes import Array
 from mmweaver.core.tensor_files import write_tensors
-from mmweaver.scene.segmentation.builtin_segmenter import GROUP_NAMES, groups_of_cells, make_network
+from mmweaver.scene.segmentation.builtin_segmenter import (
+    GROUP_NAMES,
+    HEIGHT,
+    HEIGHT_UNIT_M,
+    MEASURED,
+    SLOPE,
+    groups_of_cells,
+    make_network,
+)
 from mmweaver.training.trainer import Resumable
+from studies.manifest import StudyRun
 from studies.scene.segmenter_data import SegmenterExample, augmented, make_examples
-from studies.scene.segmenter_scores import by_geometry, confusion, scores
 
 TRAIN_KINDS = ("office", "living_room", "lab", "kitchen", "library", "bedroom", "meeting_room", "corridor")
 TEST_KINDS = ("dining_room", "classroom", "gym", "workshop")
@@ -86,7 +102,42 @@ def save_weights(network: Any, path: Path) -> None:
     write_tensors(path, state)
 
 
-def run(out: Path, recipe: SegmenterRecipe, work: Path | None = None) -> dict[str, Any]:
+def confusion(examples: list[SegmenterExample], guess: Callable[[np.ndarray], np.ndarray]) -> Int[Array, "truth guess"]:
+    """Cells by true and predicted group; `guess` maps features (13, row, column) to groups (row, column)."""
+    total = np.zeros((len(GROUP_NAMES),) * 2, np.int64)
+    for example in examples:
+        pair = example.groups * len(GROUP_NAMES) + guess(example.features)
+        total += np.bincount(pair.ravel(), minlength=total.size).reshape(total.shape)
+    return total
+
+
+def scores(table: Int[Array, "truth guess"]) -> dict[str, Any]:
+    """Mean intersection over union of the named groups that occur, that of each, and the accuracy over cells."""
+    inside = np.diag(table).astype(float)
+    union = table.sum(axis=0) + table.sum(axis=1) - inside
+    occurs = (table.sum(axis=1) > 0) & (np.arange(len(table)) > 0)
+    each = {GROUP_NAMES[g]: round(float(inside[g] / union[g]), 4) for g in np.flatnonzero(occurs)}
+    return {
+        "miou": round(float(np.mean(list(each.values()))), 4),
+        "right": round(float(inside.sum() / table.sum()), 4),
+        "iou": each,
+    }
+
+
+def by_geometry(features: Float[Array, "13 row column"]) -> Int[Array, "row column"]:
+    """Baseline from heights and slopes: floor, ceiling, upright cells as wall, tables and seats by height."""
+    height_m, slope, measured = HEIGHT_UNIT_M * features[HEIGHT], features[SLOPE], features[MEASURED] > 0
+    guess = np.zeros(height_m.shape, np.int64)
+    flat, upright = np.abs(slope) > 0.9, np.abs(slope) < 0.3
+    guess[measured & upright] = GROUP_NAMES.index("wall-other")
+    guess[measured & flat & (height_m > 0.6)] = GROUP_NAMES.index("table")
+    guess[measured & flat & (height_m > 0.3) & (height_m <= 0.6)] = GROUP_NAMES.index("couch")
+    guess[measured & flat & (height_m > 2.0)] = GROUP_NAMES.index("ceiling-other")
+    guess[measured & (height_m < 0.08)] = GROUP_NAMES.index("floor-other")
+    return guess
+
+
+def train_and_score(out: Path, recipe: SegmenterRecipe, work: Path | None = None) -> dict[str, Any]:
     """Generates rooms, trains, evaluates on unseen kinds, writes the weights; returns the log."""
     import torch
 
@@ -115,3 +166,19 @@ def run(out: Path, recipe: SegmenterRecipe, work: Path | None = None) -> dict[st
         "unseen_kinds": {name: scores(confusion(held_out, guess)) for name, guess in guesses.items()},
         "seen_kinds": {"network": scores(confusion(examples[:: max(len(examples) // 100, 1)], guesses["network"]))},
     }  # fmt: skip
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    recipe = SegmenterRecipe()
+    parser.add_argument("--out", type=Path, required=True, help="file of the weights")
+    parser.add_argument("--log", type=Path, required=True, help="file of recipe, losses and scores, JSON")
+    parser.add_argument("--work", type=Path, default=None, help="folder of rooms and state, to continue a stopped run")
+    parser.add_argument("--rooms", type=int, default=recipe.rooms_per_kind, help="rooms of each kind")
+    parser.add_argument("--epochs", type=int, default=recipe.epochs)
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    log = train_and_score(
+        options.out, SegmenterRecipe(rooms_per_kind=options.rooms, epochs=options.epochs), options.work
+    )
+    options.log.write_text(json.dumps(log, indent=1) + "\n", encoding="utf-8")

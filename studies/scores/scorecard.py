@@ -226,15 +226,6 @@ class Scorecard:
         rows["cssim"]["data_range"] = self.data_range["span"]
         return rows
 
-    def table(self) -> str:
-        """A text table, one metric per line, with baselines in further columns."""
-        columns = [("score", self.prediction), *self.baselines.items()]
-        if self.oracle is not None:
-            columns.append(("oracle", self.oracle))
-        lines = [f"{'':26}" + "".join(f"{name:>13}" for name, _ in columns)]
-        lines += [f"{name:26}" + "".join(f"{scores[name]:13.3f}" for _, scores in columns) for name in METRICS]
-        return "\n".join(lines)
-
 
 def scorecard(prediction: RadarCube, truth: RadarCube, *, oracle: RadarCube | None = None) -> Scorecard:
     """Scores a cube against the ground truth, always with its baselines.

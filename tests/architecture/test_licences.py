@@ -48,4 +48,4 @@ def test_an_entry_names_files_that_are_there_and_the_text_of_the_licence_follows
 
 def test_data_is_found():
     names = {path.name for path in DATA}
-    assert {"weaver.safetensors", "rgb.webp", "blind.npz", "development.json", "trees.npz"} <= names
+    assert {"weaver.safetensors", "rgb.webp", "trees.npz"} <= names

@@ -8,7 +8,7 @@ import torch
 
 from mmweaver.motion.motiongpt.language_model import add_motion_tokens, build_t5
 from mmweaver.motion.motiongpt.tokenizer import MotionTokenizer, TokenizerConfig
-from studies.motion.motiongpt_weights import plain_words, state_of, train_words
+from tests.motion.motiongpt_weights import plain_words, state_of, train_words
 
 TINY = TokenizerConfig(codes=32, code_width=16, width=16)
 TINY_T5: dict[str, Any] = {

@@ -1,9 +1,6 @@
 """Rows are completed by what is common to them, and by what they are compared with."""
 
-import json
-from pathlib import Path
-
-from studies.result_rows import COST, NONE_MEASURED, complete_rows, in_order, kept_rows, plan_dataset
+from studies.result_rows import COST, NONE_MEASURED, complete_rows, plan_dataset
 
 
 def test_rows_are_compared_with_baselines_and_oracles_among_them():
@@ -41,16 +38,3 @@ def test_a_metric_keeps_its_own_words_and_scores():
 def test_the_hash_of_a_plan_does_not_depend_on_its_order():
     assert plan_dataset({"a": 1, "b": 2}) == plan_dataset({"b": 2, "a": 1})
     assert plan_dataset({"a": 1})["sha256"] != plan_dataset({"a": 2})["sha256"]
-
-
-def test_rows_of_other_signals_are_kept_with_their_commit(tmp_path: Path):
-    rows = [{"dataset": {"name": "walking"}}, {"dataset": {"name": "waving"}, "commit": "old"}]
-    (tmp_path / "a.json").write_text(json.dumps({"provenance": {"commit": "first"}, "rows": rows}))
-    kept = kept_rows(tmp_path / "a.json", ["sitting"])
-    assert [row["commit"] for row in kept] == ["first", "old"]
-    assert kept_rows(tmp_path / "a.json", ["walking", "waving"]) == []
-    assert kept_rows(tmp_path / "none.json", []) == []
-    assert [row["dataset"]["name"] for row in in_order(kept[::-1], ["walking", "sitting", "waving"])] == [
-        "walking",
-        "waving",
-    ]

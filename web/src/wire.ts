@@ -1,4 +1,4 @@
-// The bytes of mmweaver.viz.wire: a JSON header, then little-endian arrays.
+// The bytes of mmweaver.viz.body_in_photo: a JSON header, then little-endian arrays.
 
 export type Data = Uint8Array | Int16Array | Int32Array | Float32Array;
 /** `stride` is the number of frames that are kept of each person, where it is not the shape's. */

@@ -1,7 +1,7 @@
 """mmweaver points: point clouds of boards and data sets become points.npz."""
 
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from mmweaver.cli.option_groups import Written
 from mmweaver.core.options import MISSING, option, options
@@ -21,7 +21,15 @@ class Options(Written):
 
     file: Path = option("the log, or a folder of frames", "FILE|DIR", default=MISSING, positional=True)
     out: Path = option("the points.npz to write", "FILE", default=MISSING, short="-o")
-    layout: str | None = option("ti_uart, csv, mmfi, radhar, npz or points (default: by the file itself)", "NAME")
+    layout: str | None = option(
+        "ti_uart, ti_replay, csv, mmfi, radhar, npz, arrays, ros or points (default: by the file itself)", "NAME"
+    )
+    unit: Literal["m", "cm", "mm"] | None = option(
+        "unit of the positions (default: metres, unless most points would then be out of reach)"
+    )
+    axes: Literal["radar", "ros"] | None = option(
+        "axes of a table: x right and y away, or ROS's x ahead and y left (default: as its columns show)"
+    )
 
 
 def run(asked: Options) -> int:
@@ -38,21 +46,23 @@ def run(asked: Options) -> int:
     from mmweaver.io.point_clouds.read_points import points_kind, read_points
 
     check_output_file(asked.out, overwrite=asked.overwrite, inputs=[asked.file])
-    cloud = read_points(asked.file, asked.layout)
+    cloud = read_points(asked.file, asked.layout, unit=asked.unit, axes=asked.axes)
     with atomic_file(asked.out) as temporary:
         write_points_npz(temporary, cloud)
-    frames = int(cloud.frame.max()) + 1 if len(cloud.frame) else 0
     summary = {
         "out": str(asked.out),
         "kind": asked.layout or points_kind(asked.file),
         "points": len(cloud.frame),
-        "frames": frames,
+        "frames": cloud.num_frames,
         "with_points": len(np.unique(cloud.frame)),
+        "notes": cloud.notes,
     }
     return asked.report(
         summary,
-        f"wrote {asked.out}: {summary['points']:,} points in {frames} frames ({summary['kind']}); x {_span(cloud.x_m)},"
+        f"wrote {asked.out}: {summary['points']:,} points in {cloud.num_frames} frames ({summary['kind']});"
+        f" x {_span(cloud.x_m)},"
         f" y {_span(cloud.y_m)}, z {_span(cloud.z_m)} m",
+        *(f"note: {sentence}" for sentence in cloud.notes),
     )
 
 

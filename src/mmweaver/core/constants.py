@@ -1,7 +1,4 @@
-"""Physical constants, SI.
-
-The version of the package.
-"""
+"""Physical constants (SI) and the version of the package."""
 
 __version__ = "0.3.0"
 

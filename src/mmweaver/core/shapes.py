@@ -20,6 +20,8 @@ AntennaPositions = Float[Array, "antenna 3"]
 # signals
 CubeValues = Complex[Array, "frame range doppler antenna"]
 AdcValues = Complex[Array, "frame loop tx rx sample"]
+LostChirps = Bool[Array, "frame loop slot"]  # whether any sample of a chirp is missing
+LostShare = Float[Array, "frame loop slot"]  # share of the samples of a chirp that are missing
 RangeDopplerMap = Float[Array, "frame range doppler"]
 RangeDopplerMask = Bool[Array, "frame range doppler"]
 RangeAngleMap = Float[Array, "frame range angle"]

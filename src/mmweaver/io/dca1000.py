@@ -22,6 +22,8 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.safe_files.regular_files import check_regular
 from mmweaver.core.safe_files.safe_arrays import read_words
+from mmweaver.core.shapes import LostShare
+from mmweaver.io.sample_files import MAX_OWN_ZEROS, SentBytes
 
 IQ_ORDERS = ("iq", "qi", "interleaved")
 INT16_MAX = 32767
@@ -45,8 +47,8 @@ def read_bin(
         Samples in ADC counts; the scale is unknown (nan).
 
     Raises:
-        InputError: If the file cannot be read, is empty or ends within a frame, or the number of complex samples per
-            chirp is odd.
+        InputError: If the file cannot be read or has less than a frame, or the number of complex samples per chirp is
+            odd.
     """
     _check(config, iq_order)
     chosen = range(num_frames_of_bin(path, config))[frames]
@@ -66,22 +68,34 @@ def num_frames_of_bin(path: Path | str, config: RadarConfig) -> int:
         Number of complete frames.
 
     Raises:
-        InputError: If the file is empty or ends within a frame.
+        InputError: If the file has less than a frame.
     """
-    path, size, frame_bytes = Path(path), check_regular(path), bytes_of_frame(config)
+    path, size = Path(path), check_regular(path)
+    if size < bytes_of_frame(config):
+        raise InputError(not_whole_frames(path, size, config))
+    return size // bytes_of_frame(config)
+
+
+def not_whole_frames(path: Path, size: int, config: RadarConfig) -> str:
+    """Sentence on a size that is no multiple of a frame's.
+
+    Args:
+        path: The file, or the first of its parts.
+        size: Bytes that the radar sent.
+        config: The radar.
+    """
     if size == 0:
-        raise InputError(f"{path} is empty")
-    if size % frame_bytes and not (size >= frame_bytes and path.with_name(GROWING).is_file()):
-        channels = "4 lanes" if config.lvds_lanes == LANES else f"{config.num_rx} RX"
-        layout = f"{config.num_loops} loops x {config.num_slots} TX x {channels} x {config.num_samples} samples x"
-        layout += f" {2 * _num_parts(config)}"
-        if others := config.frame_words_before + config.frame_words_after:
-            layout += f" + {2 * others} of other sub-frames"
-        raise InputError(
-            f"{path} has {size} bytes: {size // frame_bytes} whole frames of {frame_bytes} bytes ({layout}) and"
-            f" {size % frame_bytes} bytes more; the file is truncated or --radar is not the radar that recorded it"
-        )
-    return size // frame_bytes
+        return f"{path} is empty"
+    frame_bytes = bytes_of_frame(config)
+    channels = "4 lanes" if config.lvds_lanes == LANES else f"{config.num_rx} RX"
+    layout = f"{config.num_loops} loops x {config.num_slots} TX x {channels} x {config.num_samples} samples x"
+    layout += f" {2 * _num_parts(config)}"
+    if others := config.frame_words_before + config.frame_words_after:
+        layout += f" + {2 * others} of other sub-frames"
+    return (
+        f"{path} has {size} bytes: {size // frame_bytes} whole frames of {frame_bytes} bytes ({layout}) and"
+        f" {size % frame_bytes} bytes more; the file is truncated or --radar is not the radar that recorded it"
+    )
 
 
 def bytes_of_frame(config: RadarConfig) -> int:
@@ -149,6 +163,47 @@ def adc_of_words(words: np.ndarray, config: RadarConfig, *, iq_order: str | None
     return AdcCube(samples=samples, config=config, scale=float("nan"))
 
 
+def adc_of_sent(
+    source: SentBytes, config: RadarConfig, frames: range, *, iq_order: str | None = None
+) -> tuple[AdcCube, LostShare]:
+    """Decodes complete frames of a byte stream.
+
+    Args:
+        source: The stream, read from its files on demand.
+        config: The radar.
+        frames: Indices of the frames, consecutive.
+        iq_order: One of IQ_ORDERS. Default: the radar's.
+
+    Returns:
+        Samples in ADC counts, zero where lost, and the share of each chirp's samples that is lost, (frame, loop,
+        slot).
+
+    Raises:
+        InputError: If the number of complex samples per chirp is odd.
+    """
+    _check(config, iq_order)
+    frame_bytes = bytes_of_frame(config)
+    data, is_received = source.read(frames.start * frame_bytes, frames.stop * frame_bytes)
+    words = data.view("<i2")
+    adc = adc_of_words(words, config, iq_order=iq_order)
+    own = slice(config.frame_words_before, config.frame_words_before + _own_words(config))
+    words, is_received = (
+        one.reshape(len(frames), frame_bytes // 2)[:, own] for one in (words, is_received.reshape(-1, 2).all(axis=1))
+    )
+    # a signal that is mostly zero by itself, as of an empty simulated room, has long runs of zeros without any loss
+    zeros = ((words == 0) & is_received).sum(axis=1)
+    is_quiet = (zeros > MAX_OWN_ZEROS * is_received.sum(axis=1)) & is_received.any(axis=1)
+    shape = (
+        len(frames),
+        config.num_loops,
+        config.num_slots,
+        _own_words(config) // config.num_loops // config.num_slots,
+    )
+    lost = 1 - is_received.reshape(shape).mean(axis=-1, dtype=np.float32)
+    lost[is_quiet] = 0
+    return adc, lost if config.is_coded else lost[:, :, np.argsort(config.tx_order)]
+
+
 def write_bin(
     path: Path | str,
     adc: AdcCube,
@@ -176,7 +231,7 @@ def write_bin(
     """
     words, counts = words_of(adc, iq_order=iq_order, tx_order=tx_order, counts_per_unit=counts_per_unit)
     with atomic_file(Path(path)) as temporary:
-        words.tofile(temporary)
+        temporary.write_bytes(memoryview(words))  # numpy's own tofile hides why it failed
     return counts
 
 

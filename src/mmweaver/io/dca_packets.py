@@ -25,8 +25,9 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.safe_files.regular_files import check_regular, open_regular
-from mmweaver.core.shapes import PerFrame
-from mmweaver.io.dca1000 import adc_of_words, bytes_of_frame
+from mmweaver.core.shapes import LostShare, PerFrame
+from mmweaver.io.dca1000 import adc_of_sent, bytes_of_frame
+from mmweaver.io.sample_files import PACKET_BYTES, JoinedFiles
 
 # magic number in the file: (byte order, ticks per second)
 MAGIC = {
@@ -179,6 +180,12 @@ HEADER = struct.Struct("<IIH")
 HEADER_BYTES = HEADER.size
 MAX_BYTES = 4_000_000_000  # of frames read at once
 MAX_LOSS = 20  # bytes sent / bytes received
+BLOCK_BYTES = 2**16  # read from a file at once
+# headers of packets in a .bin: those of the network, and those of mmWave Studio's raw files
+FILE_HEADER = np.dtype([("number", "<u4"), ("low", "<u4"), ("high", "<u2")])
+RAW_HEADER = np.dtype([("number", "<u4"), ("length", "<u4"), ("low", "<u4"), ("high", "<u2")])
+MAX_APART = 1000  # packets lost between the first two of a file
+PACKETS_A_BLOCK = 2**14
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -198,13 +205,15 @@ class PacketCapture:
     """Samples of complete frames, their start times and packet statistics.
 
     Attributes:
-        adc: Samples in ADC counts.
+        adc: Samples in ADC counts, zero where lost.
+        lost_share: Share of each chirp's samples that is lost, (frame, loop, slot).
         frame_time_s: Start times of the frames in seconds of the recorder's clock.
         report: Statistics of the entire file, regardless of the frames read.
         num_frames: Complete frames in the file.
     """
 
     adc: AdcCube
+    lost_share: LostShare
     frame_time_s: PerFrame
     report: PacketReport
     num_frames: int
@@ -212,18 +221,103 @@ class PacketCapture:
 
 @dataclass(frozen=True, kw_only=True)
 class _Packets:
-    """Index of the packets of a file, without samples: 40 bytes per 1.5 kB of the file."""
+    """Index of the packets of a recording, without samples: 40 bytes per 1.5 kB."""
 
-    path: Path
+    files: JoinedFiles
     number: np.ndarray  # sequence number, (packet,) like all fields
     first_byte: np.ndarray  # offset in the sample stream
     num_bytes: np.ndarray
-    at: np.ndarray  # offset in the file
-    time_s: np.ndarray
+    at: np.ndarray  # offset in the files
+    time_s: np.ndarray  # empty if the files have no times
 
     @property
     def last_byte(self) -> np.ndarray:
         return self.first_byte + self.num_bytes
+
+
+class PacketSamples:
+    """Byte stream of a DCA1000, reassembled from packets (`SentBytes`)."""
+
+    def __init__(self, packets: _Packets):
+        """Raises InputError if nearly all packets are lost."""
+        self.packets, self.size = packets, int(packets.last_byte.max())
+        received = int(packets.num_bytes.sum())
+        if self.size > MAX_LOSS * received:
+            raise InputError(
+                f"{packets.files.paths[0]} says that {self.size} bytes were sent, but holds {received}: nearly all"
+                " packets are lost, or it is damaged; record again"
+            )
+
+    def read(self, first: int, last: int) -> tuple[np.ndarray, np.ndarray]:
+        """Bytes from `first` to `last` with zeros in place of lost ones, and whether each was received."""
+        return _reassembled(self.packets, first, last)
+
+    def report(self, num_bytes: int) -> PacketReport:
+        """Statistics of all packets; `num_bytes` are those of complete frames."""
+        number = self.packets.number
+        late, repeated = _late_and_repeated(number)
+        return PacketReport(
+            packets=len(number),
+            lost=int(number.max() - len(np.unique(number))),
+            lost_bytes=num_bytes - _num_received(self.packets, num_bytes),
+            late=late,
+            repeated=repeated,
+            bytes_after_last_frame=max(0, self.size - num_bytes),
+        )
+
+
+def packets_with_headers(paths: tuple[Path, ...]) -> PacketSamples | None:
+    """The packets of .bin files that still have their headers.
+
+    The header is that of a packet (number, bytes sent before) or, as in mmWave Studio's raw files, has the payload's
+    length between the two.
+
+    Args:
+        paths: The file, or the parts of a recording.
+
+    Returns:
+        The samples; None if there are no headers.
+
+    Raises:
+        InputError: If nearly all packets are lost.
+    """
+    files = JoinedFiles(paths)
+    head = files.read(0, 2 * (RAW_HEADER.itemsize + PACKET_BYTES)).tobytes()
+    for kind in (FILE_HEADER, RAW_HEADER):
+        step = kind.itemsize + PACKET_BYTES
+        if len(head) < step + kind.itemsize:
+            continue
+        pair = np.concatenate([np.frombuffer(head, kind, 1, at) for at in (0, step)])
+        fits = "length" not in (kind.names or ()) or (pair["length"] == PACKET_BYTES).all()
+        apart = int(np.diff(pair["number"].astype(np.int64))[0])
+        if fits and 0 < apart < MAX_APART and np.diff(_sent_before(pair))[0] == apart * PACKET_BYTES:
+            return PacketSamples(_headers(files, kind))
+    return None
+
+
+def _sent_before(header: np.ndarray) -> np.ndarray:
+    return header["low"].astype(np.int64) | (header["high"].astype(np.int64) << 32)
+
+
+def _headers(files: JoinedFiles, kind: np.dtype) -> _Packets:
+    """Index of packets of equal size with headers; the last may be shorter."""
+    step, headers = kind.itemsize + PACKET_BYTES, []
+    for at in range(0, files.size, PACKETS_A_BLOCK * step):
+        block = files.read(at, at + PACKETS_A_BLOCK * step)
+        whole = np.pad(block, (0, -len(block) % step)).reshape(-1, step)
+        headers.append(np.ascontiguousarray(whole[:, : kind.itemsize]).view(kind)[:, 0])
+    header = np.concatenate(headers)
+    at = np.arange(len(header)) * step + kind.itemsize
+    num_bytes = np.clip(files.size - at, 0, PACKET_BYTES)
+    used = num_bytes > 0
+    return _Packets(
+        files=files,
+        number=header["number"].astype(np.int64)[used],
+        first_byte=_sent_before(header)[used],
+        num_bytes=num_bytes[used],
+        at=at[used],
+        time_s=np.zeros(0),
+    )
 
 
 def read_pcap(
@@ -252,35 +346,27 @@ def read_pcap(
     Raises:
         InputError: If the file contains no packets, less than one frame, or two recordings.
     """
-    packets, num_bytes = _sent(path)
+    packets = PacketSamples(_packets_of(Path(path)))
     frame_bytes = bytes_of_frame(config)
-    total = num_bytes // frame_bytes
+    total = packets.size // frame_bytes
     if num_frames is not None:
-        total = min(num_frames, -(-num_bytes // frame_bytes))
+        total = min(num_frames, -(-packets.size // frame_bytes))
     if total == 0:
         raise InputError(
-            f"{path} holds {num_bytes} bytes, but one frame of this radar has {frame_bytes}; was it"
+            f"{path} holds {packets.size} bytes, but one frame of this radar has {frame_bytes}; was it"
             " recorded with this radar.cfg?"
         )
     chosen = range(total)[frames]
     if len(chosen) * frame_bytes > MAX_BYTES:
         size = len(chosen) * frame_bytes / 1e9
         raise InputError(f"{path} holds {size:.1f} GB of samples; at most {MAX_BYTES / 1e9:.0f} GB are read at once")
-    late, repeated = _late_and_repeated(packets.number)
-    report = PacketReport(
-        packets=len(packets.number),
-        lost=int(packets.number.max() - len(np.unique(packets.number))),
-        lost_bytes=total * frame_bytes - _num_received(packets, total * frame_bytes),
-        late=late,
-        repeated=repeated,
-        bytes_after_last_frame=max(0, num_bytes - total * frame_bytes),
-    )
-    data = _reassembled(packets, chosen.start * frame_bytes, chosen.stop * frame_bytes)
+    adc, lost_share = adc_of_sent(packets, config, chosen, iq_order=iq_order)
     return PacketCapture(
-        adc=adc_of_words(data.view("<i2"), config, iq_order=iq_order),
-        report=report,
+        adc=adc,
+        lost_share=lost_share,
+        report=packets.report(total * frame_bytes),
         num_frames=total,
-        frame_time_s=_frame_times(packets, total, frame_bytes, config)[chosen.start : chosen.stop],
+        frame_time_s=_frame_times(packets.packets, total, frame_bytes, config)[chosen.start : chosen.stop],
     )
 
 
@@ -299,8 +385,8 @@ class SampleBytes:
         Raises:
             InputError: If the file contains no packets, or nearly all are lost.
         """
-        self._packets, self.size = _sent(path)
-        self._at = 0
+        self._packets = PacketSamples(_packets_of(Path(path)))
+        self.size, self._at = self._packets.size, 0
 
     def read(self, num_bytes: int) -> bytes:
         """Reads the next bytes.
@@ -315,25 +401,17 @@ class SampleBytes:
             InputError: If the file contains two recordings.
         """
         first, self._at = self._at, min(self.size, self._at + num_bytes)
-        return _reassembled(self._packets, first, self._at).tobytes()
+        return self._packets.read(first, self._at)[0].tobytes()
 
 
-def _sent(path: Path | str) -> tuple[_Packets, int]:
-    """Packet index of a file, and the number of sample bytes that were sent."""
-    path = Path(path)
+def _packets_of(path: Path) -> _Packets:
+    """Indexes the packets of a file, anew if it has changed."""
     changed = path.stat() if path.is_file() else None
-    packets = _packets_of(path, None if changed is None else (changed.st_mtime_ns, changed.st_size))
-    num_bytes, received = int(packets.last_byte.max()), int(packets.num_bytes.sum())
-    if num_bytes > MAX_LOSS * received:
-        raise InputError(
-            f"{path} says that {num_bytes} bytes were sent, but holds {received}: nearly all packets are lost, or it is"
-            " damaged; record again"
-        )
-    return packets, num_bytes
+    return _indexed(path, None if changed is None else (changed.st_mtime_ns, changed.st_size))
 
 
 @lru_cache(maxsize=1)  # index a recording that is read in pieces only once
-def _packets_of(path: Path, _changed: tuple[int, int] | None) -> _Packets:
+def _indexed(path: Path, _changed: tuple[int, int] | None) -> _Packets:
     """Indexes the packets of a file. Raises InputError if there are none, or one is not from a DCA1000."""
     found = {name: array("Q") for name in ("number", "first_byte", "num_bytes", "at")}
     times = array("d")
@@ -349,9 +427,8 @@ def _packets_of(path: Path, _changed: tuple[int, int] | None) -> _Packets:
         times.append(packet.time_s)
     if not times:
         raise InputError(f"{path} holds no packets of a DCA1000 (UDP port {DATA_PORT}); was the radar started?")
-    return _Packets(
-        path=path, time_s=np.array(times), **{name: np.array(column, np.int64) for name, column in found.items()}
-    )
+    columns = {name: np.array(column, np.int64) for name, column in found.items()}
+    return _Packets(files=JoinedFiles((path,)), time_s=np.array(times), **columns)
 
 
 def _late_and_repeated(numbers: np.ndarray) -> tuple[int, int]:
@@ -369,23 +446,23 @@ def _num_received(packets: _Packets, size: int) -> int:
     return int(np.maximum(last - np.maximum(first, before), 0).sum())
 
 
-def _reassembled(packets: _Packets, first: int, last: int) -> np.ndarray:
-    """Bytes from `first` to `last` in order, (byte,); zeros where nothing was received."""
+def _reassembled(packets: _Packets, first: int, last: int) -> tuple[np.ndarray, np.ndarray]:
+    """Bytes from `first` to `last` in order, (byte,), zeros where nothing was received, and where something was."""
     data, is_received = np.zeros(last - first, np.uint8), np.zeros(last - first, bool)
-    with open_regular(packets.path) as file:
-        for index in np.flatnonzero((packets.first_byte < last) & (packets.last_byte > first)):
-            begin = int(packets.first_byte[index])
-            file.seek(int(packets.at[index]))
-            payload = np.frombuffer(file.read(int(packets.num_bytes[index])), np.uint8)
-            new = payload[max(0, first - begin) : last - begin]
-            place = slice(max(begin - first, 0), max(begin - first, 0) + len(new))
-            if is_received[place].any() and not (is_received[place].all() and np.array_equal(data[place], new)):
-                raise InputError(
-                    f"{packets.path} holds different data for byte {begin}: more than one recording in a file;"
-                    " record each to a file of its own"
-                )
-            data[place], is_received[place] = new, True
-    return data
+    block, start = np.zeros(0, np.uint8), 0
+    for index in np.flatnonzero((packets.first_byte < last) & (packets.last_byte > first)):
+        begin, at, size = (int(column[index]) for column in (packets.first_byte, packets.at, packets.num_bytes))
+        if at < start or at + size > start + len(block):
+            block, start = packets.files.read(at, at + max(size, BLOCK_BYTES)), at
+        new = block[at - start : at - start + size][max(0, first - begin) : last - begin]
+        place = slice(max(begin - first, 0), max(begin - first, 0) + len(new))
+        if is_received[place].any() and not (is_received[place].all() and np.array_equal(data[place], new)):
+            raise InputError(
+                f"{packets.files.paths[0]} holds different data for byte {begin}: more than one recording in a file;"
+                " record each to a file of its own"
+            )
+        data[place], is_received[place] = new, True
+    return data, is_received
 
 
 def _frame_times(packets: _Packets, frames: int, frame_bytes: int, config: RadarConfig) -> PerFrame:

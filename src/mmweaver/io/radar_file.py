@@ -10,9 +10,11 @@ from mmweaver.core.firmware_settings import FIRMWARE, FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.core.virtual_array import azimuth_resolution_rad, has_elevation
+from mmweaver.io.infineon import is_infineon, read_infineon_config
 from mmweaver.io.mmwave_studio import is_mmwave_studio, read_mmwave_studio, read_studio_script
+from mmweaver.io.peer_arrays import is_rf_genesis, read_rf_genesis_config
 from mmweaver.io.radar_options import RadarOptions, split_radar
-from mmweaver.io.ti_cfg import cfg_path, read_ti_cfg
+from mmweaver.io.ti_cfg import cfg_path, read_ti_cfg, ti_cfg_lines
 from mmweaver.io.ti_firmware import read_ti_firmware
 
 
@@ -21,7 +23,8 @@ def load_radar(name_or_path: str) -> RadarConfig:
 
     Args:
         name_or_path: Name of a preset, or path of a TI .cfg, an mmWave Studio .json or .lua, or the .json of a
-            RadarConfig. Options may follow: "profile.cfg#subframe=1;antennas=aop;lanes=4" (`io.radar_options`).
+            RadarConfig, of Infineon's Radar SDK or of RF-Genesis. Options may follow:
+            "profile.cfg#subframe=1;antennas=aop;lanes=4" (`io.radar_options`).
 
     Returns:
         The radar.
@@ -34,7 +37,7 @@ def load_radar(name_or_path: str) -> RadarConfig:
         return options.applied(PRESETS[name_or_path])
     path = Path(name_or_path)
     if path.is_file() and path.suffix.lower() in RADAR_FILES:
-        return RADAR_FILES[path.suffix.lower()](path, options)
+        return options.with_pattern(RADAR_FILES[path.suffix.lower()](path, options))
     what = "is neither .cfg nor .json" if path.is_file() else "is neither a radar preset nor a file"
     raise InputError(
         f"{name_or_path!r} {what}; presets: {', '.join(PRESETS)}; or give a TI .cfg, an mmWave Studio .json or"
@@ -58,10 +61,44 @@ def load_firmware(name_or_path: str) -> FirmwareSettings:
     return FIRMWARE.get(split_radar(name_or_path)[0], FirmwareSettings()) if path is None else read_ti_firmware(path)
 
 
+def announced_frames(name_or_path: str) -> int | None:
+    """Number of frames that the board was configured to send.
+
+    Args:
+        name_or_path: As in `load_radar`.
+
+    Returns:
+        The number in frameCfg or advFrameCfg of a .cfg, or in mmWave Studio's JSON; None if it is endless or unknown.
+    """
+    path = Path(split_radar(name_or_path)[0])
+    try:
+        if name_or_path in PRESETS or not path.is_file():
+            return None
+        if path.suffix.lower() == ".cfg":
+            lines = ti_cfg_lines(path, {"advFrameCfg": 3})
+            one = lines["frameCfg"][-1].whole(3) if "frameCfg" in lines else lines["advFrameCfg"][-1].whole(2)
+        else:
+            device = read_json(path)["mmWaveDevices"][0]["rfConfig"]
+            frames = device.get("rlFrameCfg_t") or device["rlAdvFrameCfg_t"]["frameSeq"]
+            one = int(frames["numFrames"])
+    except (InputError, KeyError, IndexError, TypeError, ValueError, AttributeError):
+        return None
+    return one or None
+
+
 def _read_json_radar(path: Path, options: RadarOptions) -> RadarConfig:
     values = read_json(path)
     if is_mmwave_studio(values):
         return read_mmwave_studio(path, options)
+    if is_infineon(values):
+        return read_infineon_config(path, options)
+    if is_rf_genesis(values):
+        return options.applied(read_rf_genesis_config(path, values))
+    if not isinstance(values, dict) or "schema_version" not in values:
+        raise InputError(
+            f"{path} is no radar that is known: neither a radar.json (mmweaver radar awr1843 --json > radar.json), nor"
+            " JSON of mmWave Studio, of Infineon's Radar SDK or of RF-Genesis"
+        )
     with file_named(path):
         return options.applied(RadarConfig.from_values(values))
 

@@ -76,6 +76,16 @@ def implausible(
     return [*found, *(layout or [*_transmitters(cube), *_velocity_sign(cube)])]
 
 
+def other_layout(adc: AdcCube, iq_order: str | None) -> str:
+    """A more likely chirp layout or number of lanes, as a sentence; "" if the radar's fits.
+
+    Args:
+        adc: Raw samples of a few frames.
+        iq_order: I/Q order with which int16 words were read.
+    """
+    return "; ".join([*wrong_lanes(adc, iq_order), *_layout(adc)])
+
+
 def _number_type(path: Path | None) -> Iterator[str]:
     """Detects files of other number types that were read as int16."""
     if path is None or path.suffix.lower() not in (".bin", ".dat", ".raw"):

@@ -16,9 +16,10 @@ from mmweaver.core.records import AdcCube, PointCloud, RadarCube
 from mmweaver.core.stages import Stages
 from mmweaver.io.dca_packets import PacketCapture
 from mmweaver.io.npz_files import write_npz
-from mmweaver.io.radar_file import load_firmware
+from mmweaver.io.radar_file import announced_frames, load_firmware
 from mmweaver.io.result_folder import META_VERSION, file_digest, radar_meta, save_results
 from mmweaver.recordings.analysis import RecordingAnalysis, analyse_recording
+from mmweaver.recordings.dca_bin import loss_sentences
 from mmweaver.recordings.plausibility import implausible
 from mmweaver.recordings.read_recording import Recording, as_config, read_recording, without_board
 from mmweaver.scene.photo.capture_photo import photo_folder, photo_times_s
@@ -186,14 +187,30 @@ def _board_metas(recording: Recording) -> dict[str, Any]:
 
 def _warnings(recording: Recording, strict: bool) -> list[str]:
     """Deviations of samples from settings. Raises InputError for any in strict mode."""
+    found = [*recording.notes, *_fewer_frames(recording)]
+    if recording.lost_share is not None:
+        found += loss_sentences(recording.lost_share)
     if recording.adc is None:
-        return []
+        return _refused_if(strict, found, recording.path)
     file = recording.files["recording"] if recording.axes is None else None
     times_s = None if recording.packets is None else recording.packets.frame_time_s
-    found = implausible(recording.adc, recording.cube, file, iq_order=recording.iq_order, frame_time_s=times_s)
+    found += implausible(recording.adc, recording.cube, file, iq_order=recording.iq_order, frame_time_s=times_s)
+    return _refused_if(strict, found, recording.path)
+
+
+def _refused_if(strict: bool, found: list[str], path: Path) -> list[str]:
     if found and strict:
-        raise InputError(f"{recording.path}: {'; '.join(found)} (strict)")
+        raise InputError(f"{path}: {'; '.join(found)} (strict)")
     return found
+
+
+def _fewer_frames(recording: Recording) -> list[str]:
+    """A sentence if the radar's file announces another number of frames than there are."""
+    announced = None if recording.radar_source is None else announced_frames(recording.radar_source)
+    held = recording.num_frames
+    if announced is None or held is None or held == announced:
+        return []
+    return [f"{Path(recording.radar_source or '').name} announces {announced} frames, the recording has {held}"]
 
 
 def _firmware(points: str, radar_source: str | None) -> FirmwareSettings | None:
@@ -231,7 +248,7 @@ def _assumptions(recording: Recording) -> list[str]:
     report = recording.packets.report
     sentences = [f"{every} the radar's configuration says; frame_clock_s holds when their first packets came"]
     if report.lost_bytes:
-        sentences.append(f"{report.lost} packets were lost: {report.lost_bytes} bytes of samples are zero")
+        sentences.append(f"{report.lost} packets were lost: {report.lost_bytes} bytes of samples")
     if report.bytes_after_last_frame:
         sentences.append(f"{report.bytes_after_last_frame} bytes of an unfinished last frame were left out")
     return sentences

@@ -7,7 +7,6 @@ from typing import Any
 from mmweaver.core.records import RadarCube
 from mmweaver.core.safe_files.safe_arrays import read_npy
 from mmweaver.io.capture_std import is_capture
-from mmweaver.io.dca1000 import num_frames_of_bin
 from mmweaver.io.stream_folder import is_stream, num_frames_of_stream
 from mmweaver.recordings.read_recording import Recording, read_recording
 
@@ -33,20 +32,16 @@ class RecordingPieces:
         self.path, self._radar, self._how = Path(path), radar, how
         self._in_part = self._is_read_in_part(how.get("axes"))
         first = self._recording(slice(0, 1)) if self._in_part else None
-        self._first, self._packets = (None, None) if first is None else (first.cube, first.packets)
+        self._first, self._num_frames = (None, None) if first is None else (first.cube, first.num_frames)
 
     @cached_property
     def num_frames(self) -> int:
         """Number of frames."""
         if self._first is None:
             return len(self._whole.values)
-        if self._packets is not None:
-            return self._packets.num_frames
-        if self.path.is_dir():
-            return num_frames_of_stream(self.path)
-        if self.path.suffix == ".npy":
-            return len(read_npy(self.path, mapped=True))
-        return num_frames_of_bin(self.path, self._first.config)
+        if self._num_frames is not None:
+            return self._num_frames
+        return num_frames_of_stream(self.path) if self.path.is_dir() else len(read_npy(self.path, mapped=True))
 
     @property
     def num_values_a_frame(self) -> int:

@@ -97,9 +97,8 @@ def _port_log(file: Path, settings: Path | None) -> Result:
     config = None if settings is None else load_radar(str(settings))
     period_s = PORT_LOG_PERIOD_S if config is None else config.frame_period_s
     assumed = [f"The log brings no .cfg: {1 / period_s:g} frames a second were taken."] if config is None else []
-    if log.skipped:
-        assumed.append(f"{log.skipped} damaged packets were left out.")
-    meta = {"text": file.name, "points": "firmware", "frames": len(log.frame_number), "assumed": assumed}
+    assumed += [f"{note[0].upper()}{note[1:]}." for note in log.points.notes]
+    meta = {"text": file.name, "points": "firmware", "frames": log.points.num_frames, "assumed": assumed}
     radar = "data port of a TI board" if config is None else config.name
     return Result(cube=None, points=log.points, poses=(), meta=meta, frame_period_s=period_s, radar=radar)
 

@@ -3,6 +3,9 @@
 The server queues them.
 """
 
+import ctypes
+import gc
+import sys
 from collections import OrderedDict
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -38,7 +41,7 @@ from mmweaver.weaver.generation import Generation, Room
 DEMO = "demo"
 FIRST_TEXT = "a person walks towards the radar, then waves with the left hand"
 BOARDS = ("typical:0", "typical:1", "typical:2", "ideal")
-_MAX_WEAVERS = 12  # each keeps its last room
+_MAX_WEAVERS = 8  # each keeps its last room
 
 T = TypeVar("T")
 
@@ -235,14 +238,14 @@ class Service:
         """
         asked = Form.of(body)
         room, radar = self.room_of(session, asked.room), self._radar(session, asked)
-        here, weaver = self._room(session, asked), self._weaver(asked, radar)
         board = self.board_of(session, asked.board_name, radar)
         request = replace(asked.request, motion=self.motion_of(session, asked.motion_id), board=board)
 
         def made(keep_adc: bool = False) -> Generation:
+            weaver = self._weaver(asked, radar)  # a kept result must not keep a prepared room
             with error_code("sentence"):
                 parsed = weaver.parsed(replace(request, keep_adc=keep_adc))
-            return weaver.carry_out(parsed, here)
+            return weaver.carry_out(parsed, self._room(session, asked))
 
         with recovery_options(asked):
             generation = made()
@@ -259,7 +262,7 @@ class Service:
             meta=generation.meta,
             generation=generation,
             with_samples=lambda: made(keep_adc=True),
-            rays=lambda frame: weaver.rays(here, generation, frame),
+            rays=lambda frame: self._weaver(asked, radar).rays(self._room(session, asked), generation, frame),
         )
         return self._kept(session, result, {"seconds": generation.stages.seconds, **repeated})
 
@@ -333,10 +336,12 @@ class Service:
             for key in [key for key in self._weavers if own & set(key)]:
                 del self._weavers[key]
         self.sessions.end(session)
+        trim_memory()
 
     def _kept(self, session: Session, result: Result, more: dict[str, Any]) -> bytes:
         name = session.add(result)
         self.sessions.keep_within_memory()
+        trim_memory(collect=False)
         return self._packed(result, name, more)
 
     @staticmethod
@@ -356,6 +361,14 @@ class Service:
                     self._weavers.popitem(last=False)
             self._weavers.move_to_end(key)
             return self._weavers[key]
+
+
+def trim_memory(*, collect: bool = True) -> None:
+    """Gives freed memory back to the system; glibc would keep it for every thread."""
+    if sys.platform.startswith("linux"):
+        if collect:
+            gc.collect()
+        getattr(ctypes.CDLL(None), "malloc_trim", lambda _: 0)(0)
 
 
 def _sample() -> Room:

@@ -43,7 +43,10 @@ def test_the_out_of_box_demo(tmp_path: Path):
     assert found.frame_number.tolist() == [7, 9, 10]
     assert found.skipped == 2
     cloud = read_points(tmp_path / "log.dat")
-    assert cloud.frame.tolist() == [0, 0, 0, 2]
+    assert cloud.frame.tolist() == [0, 0, 0, 3]  # the board counted frame 8, too
+    assert cloud.num_frames == 4
+    assert any("1 of 4 frames" in note for note in cloud.notes)
+    assert any("2 damaged" in note for note in cloud.notes)
     assert np.allclose(np.column_stack([cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps])[:3], XYZV)
     assert np.allclose(cloud.snr_db, 12.3)
 

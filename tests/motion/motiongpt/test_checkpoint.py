@@ -15,7 +15,7 @@ from mmweaver.motion.motiongpt.checkpoint import (
     t5_sizes,
     tokenizer_config,
 )
-from studies.motion.motiongpt_weights import state_of
+from tests.motion.motiongpt_weights import state_of
 
 
 class Anything:

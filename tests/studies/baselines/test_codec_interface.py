@@ -12,8 +12,7 @@ from studies.fields.codecs import CODECS
 from tests.compression.echoes import crowd, error_db
 
 NEEDS = {
-    "sz3": "imagecodecs", "sperr": "imagecodecs", "zfp": "imagecodecs", "jpeg2000": "imagecodecs",
-    "jpegxl": "imagecodecs", "blosc2": "blosc2", "wavelets": "pywt", "cp": "tensorly",
+    "sperr": "imagecodecs", "jpeg2000": "imagecodecs", "jpegxl": "imagecodecs", "blosc2": "blosc2", "cp": "tensorly",
 }  # fmt: skip
 SLOW = {"inr_smooth_short", "inr_paper"}
 # .mmw with its noise: "mmw" here and test_noise_is_kept_on_request in tests/compression/test_mmw_codec.py
@@ -46,8 +45,7 @@ def test_bytes_are_kept_to_and_more_of_them_help(name: str):
 
 
 def test_what_cannot_be_so_small_says_so():
-    pytest.importorskip("imagecodecs")
-    assert CODECS["zfp"]().encoded(crowd(), 100) is None
+    assert CODECS["svd"]().encoded(crowd(), 100) is None
     assert CODECS["mmw"]().encoded(crowd(), 20) is None
 
 
@@ -57,5 +55,5 @@ def test_planes_come_back():
 
 def test_a_missing_library_is_named(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(optional_packages, "is_installed", lambda _: False)
-    with pytest.raises(InputError, match=r"pywavelets.*mmweaver\[codecs\]"):
-        library("pywt")
+    with pytest.raises(InputError, match=r"tensorly.*mmweaver\[codecs\]"):
+        library("tensorly.decomposition")

@@ -1,10 +1,6 @@
-import warnings
-
 import numpy as np
-import pytest
 
 from studies.baselines.coefficient_codecs import (
-    Wavelets,
     antenna_klt,
     packed_top,
     unpacked_klt,
@@ -30,10 +26,3 @@ def test_the_reader_has_the_writers_directions():
     assert np.allclose(basis @ basis.conj().T, np.eye(12))
     strength = np.mean(np.abs(crowd().values.reshape(-1, 12) @ basis.T) ** 2, axis=0)
     assert strength[0] > 2 * strength[-1]
-
-
-def test_wavelets_of_short_axes_warn_of_nothing():
-    pytest.importorskip("pywt")
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        assert Wavelets().at(crowd().values[:, :8, :8], 1.0, crowd())

@@ -8,7 +8,7 @@ from tests.compression.echoes import crowd
 
 def test_a_row_has_its_bytes_scores_and_floors():
     signal = StudySignal(name="crowd", origin="simulated", cube=crowd(), realization=None)
-    row = codec_row(CODECS["top_cells"](), signal, 4000)
+    row = codec_row(CODECS["top_klt"](), signal, 4000)
     assert row["size"]["bytes"] <= 4000
     assert row["seconds"]["decode"] is not None
     for name in SCORES:

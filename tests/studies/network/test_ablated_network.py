@@ -16,7 +16,6 @@ from studies.network.ablated_network import (
     AblatedNetwork,
     flat_body,
     joints_alone,
-    level_alone,
     uniform_surfaces,
 )
 from tests.rooms import standing_person
@@ -55,12 +54,6 @@ def test_a_body_without_echoes_between_joints_returns_as_much(view: SceneTensors
     assert (flat_body(prior).cross_section_m2 == FLAT_M2).all()
 
 
-def test_only_the_level_is_left():
-    said = torch.randn(2, 3, 5)
-    assert torch.equal(level_alone(said)[..., 0], said[..., 0])
-    assert not level_alone(said)[..., 1:].any()
-
-
 @pytest.mark.parametrize(
     ("part", "rests", "moves"),
     [("room prior", True, False), ("body prior", False, True), ("between joints", False, True), ("ghosts", False, True),
@@ -82,12 +75,3 @@ def test_leaving_a_part_out_changes_what_it_is_about(
     if part == "ghosts":
         assert moving[..., NUM_ANCHORS:].sum() > 0
         assert not other_moving[..., NUM_ANCHORS:].any()
-
-
-def test_without_a_picture_gradients_are_numbers(view: SceneTensors):
-    torch.manual_seed(0)
-    network = AblatedNetwork(("colour", "depth", "mask"))
-    network.encode_room(view).z_env.square().mean().backward()
-    gradients = [parameter.grad for parameter in network.environment.parameters() if parameter.grad is not None]
-    assert gradients
-    assert all(torch.isfinite(gradient).all() for gradient in gradients)

@@ -12,7 +12,6 @@ from mmweaver.datasets.dataset_plan import ACTIVITIES, DatasetPlan
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
 from mmweaver.datasets.generate_rooms import generate_dataset
 from mmweaver.models.activity_network import ActivityNetwork
-from mmweaver.models.scatterer_network import WeaverNetwork
 from studies.network import activity_gain
 from studies.network.activity_gain import (
     ALONE,
@@ -25,7 +24,6 @@ from studies.network.activity_gain import (
     rows_of,
     simulated_in,
     unseen_rooms,
-    with_generated,
 )
 from studies.network.room_cache import RoomCache
 
@@ -138,27 +136,3 @@ def test_a_few_recordings_are_of_all_activities_and_a_head_that_begins_anew_know
     old, new = (GainStudy(network, base, begins_anew=anew).head().state_dict() for anew in (False, True))
     assert torch.equal(old["first.weight"], network.head.first.weight)
     assert not torch.equal(new["first.weight"], old["first.weight"])
-
-
-@pytest.mark.slow  # tests/propagation/test_background.py: the room of a recording in a generated signal
-def test_a_recorded_room_is_the_same_in_every_signal(data: Path):
-    """The network that was given the empty room has the truth's own resting echoes, behind the person.
-
-    Over all ranges the body's own resting echoes count, of an untrained network 1.4 times the room's.
-    """
-    (room,) = unseen_rooms(read_rooms(data), read_plan(data), 5)
-    torch.manual_seed(0)
-    network = WeaverNetwork().eval()
-    (_, pose), *_ = motions_in(room, 1, seed=0)
-    rest = AWR1843.num_loops // 2
-    behind = AWR1843.range_m > np.linalg.norm(pose.joints_m, axis=-1).max() + 0.5
-    truth = room.room.static[behind]
-
-    def agreement(recorded: bool, seed: int) -> float:
-        cube = with_generated(network, lambda one: one.photographed, recorded=recorded)(room)(pose, seed)
-        still = cube.values[:, behind, rest].mean(axis=0)
-        return float(np.abs(np.vdot(still, truth)) / (np.linalg.norm(still) * np.linalg.norm(truth)))
-
-    for seed in (1, 2):
-        assert agreement(True, seed) > 0.85
-    assert agreement(False, 1) < 0.5

@@ -11,7 +11,6 @@ from studies.manifest import StudyRun
 from studies.physics import mars
 from studies.physics.cloud_scores import score
 from studies.physics.mars import (
-    MarsVariant,
     Setup,
     centroid_baseline,
     detect,
@@ -20,8 +19,7 @@ from studies.physics.mars import (
     simulate,
     surface_baseline,
 )
-from studies.physics.mars_data import MarsStretch, read_mars
-from studies.physics.mars_pieces import cut
+from studies.physics.mars_data import MarsStretch, cut, read_mars
 from tests.studies.physics.test_mars_data import write_split
 
 HERE = Setup(shift_m=(0.0, 0.0, 0.2), height_m=1.75)
@@ -41,7 +39,7 @@ def pieces(folder: Path) -> list[MarsStretch]:
 
 
 def test_a_swaying_person_gives_points_on_the_body(pieces: list[MarsStretch]):
-    clouds = detect(simulate(pieces, HERE, MarsVariant()), pieces, HERE, MarsVariant())
+    clouds = detect(simulate(pieces, HERE), pieces, HERE)
     assert [len(piece) for piece in clouds] == [10, 10]
     every = [cloud for piece in clouds for cloud in piece if len(cloud.x_m)]
     assert len(every) > 12
@@ -55,7 +53,7 @@ def test_the_same_pose_again_is_a_like_frame_a_second_away(folder: Path):
     stretches = read_mars(folder, "test")
     pieces = cut(stretches, 10, 2)
     (stretch,) = stretches
-    joints_m = mars.smoothed(stretch.joints_m, 1.0)
+    joints_m = mars.smoothed(stretch.joints_m)
     place = {id(cloud): at for at, cloud in enumerate(stretch.clouds)}
     for piece, again in zip(pieces, same_pose_oracle(pieces, stretches), strict=True):
         for cloud, other in zip(piece.clouds, again, strict=True):
@@ -66,30 +64,14 @@ def test_the_same_pose_again_is_a_like_frame_a_second_away(folder: Path):
 
 
 def test_the_elevated_transmitter_moves_points_up_and_down(pieces: list[MarsStretch]):
-    adcs = simulate(pieces, HERE, MarsVariant())
+    adcs = simulate(pieces, HERE)
     heights = []
     for degrees in (-12.0, 0.0, 12.0):
-        clouds = detect(adcs, pieces, replace(HERE, elevation_deg=degrees), MarsVariant())
+        clouds = detect(adcs, pieces, replace(HERE, elevation_deg=degrees))
         heights.append(np.median(np.concatenate([cloud.z_m for piece in clouds for cloud in piece])))
     # rows are half a wavelength apart: 12 degrees are a sine of 0.067, at 1.8 m some 12 cm
     assert heights[0] - heights[1] == pytest.approx(0.12, abs=0.06)
     assert heights[1] - heights[2] == pytest.approx(0.12, abs=0.06)
-
-
-def test_the_chains_and_variants_differ(pieces: list[MarsStretch]):
-    adcs = simulate(pieces, HERE, MarsVariant())
-    most = {
-        name: sum(len(cloud.x_m) for piece in detect(adcs, pieces, HERE, variant) for cloud in piece)
-        for name, variant in {
-            "plain": MarsVariant(), "grouped": MarsVariant(grouped=True), "ours": MarsVariant(chain="cfar"),
-        }.items()
-    }  # fmt: skip
-    assert most["grouped"] < most["plain"]
-    assert most["ours"] > 0
-    fainter = simulate(pieces[:1], HERE, MarsVariant(brighter_db=-20.0))
-    assert not np.array_equal(fainter[0].samples, adcs[0].samples)
-    again = simulate(pieces[:1], HERE, MarsVariant())
-    assert np.array_equal(again[0].samples, adcs[0].samples)
 
 
 def test_floors_and_ceiling(pieces: list[MarsStretch]):
@@ -113,13 +95,12 @@ def test_the_whole_run(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(mars, "PIECES_TO_ESTIMATE", 1)
     monkeypatch.setattr(mars, "PIECE_FRAMES", 10)
     monkeypatch.setattr(mars, "HEIGHTS_M", (0.2, 0.3))
-    monkeypatch.setattr(mars, "VARIANTS", {"simulator": MarsVariant(), "grouped": MarsVariant(grouped=True)})
     lines: list[str] = []
-    scores = mars.measure(folder, StudyRun("mars", tmp_path), lines.append)
+    scores = mars.measure(folder, StudyRun("mars", tmp_path), "test", lines.append)
     written = {path.stem for path in (tmp_path / "mars").iterdir()}
     assert written == set(scores) == {
         "baseline_centroid", "baseline_random_on_body", "baseline_random_real_frame", "oracle_neighbouring_frame",
-        "oracle_same_pose_again", "simulator", "grouped",
+        "oracle_same_pose_again", "simulator",
     }  # fmt: skip
     record = json.loads((tmp_path / "mars" / "simulator.json").read_text())
     assert set(record["config"]["estimated_on_validate"]) == set(Setup.__dataclass_fields__)

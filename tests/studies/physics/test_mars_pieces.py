@@ -5,8 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from studies.physics.mars_data import cloud_of, read_mars
-from studies.physics.mars_pieces import as_published, body_height_m, cut, pose_of
+from studies.physics.mars_data import as_published, body_height_m, cloud_of, cut, pose_of, read_mars
 from tests.rooms import STANDING_M
 from tests.studies.physics.test_mars_data import write_split
 

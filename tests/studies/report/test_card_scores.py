@@ -63,8 +63,8 @@ def test_every_weight_file_has_a_card():
         *(ROOT / "weights").glob("*.safetensors"),
         *(ROOT / "src" / "mmweaver" / "weights").glob("*.safetensors"),
     ]
-    weights += [folder for folder in (ROOT / "weights").iterdir() if folder.is_dir() and "frozen" not in folder.name]
-    for path in weights:  # the frozen recognisers are features, not weights
+    weights += [folder for folder in (ROOT / "weights").iterdir() if folder.is_dir()]
+    for path in weights:
         assert path.name in cards, path
     assert {ROOT / name for name in MODELS} == set(CARDS)
 

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from mmweaver.core.errors import InputError
-from studies.report.computed_tables import ablation_table, codec_margins_table, codecs_table, zero_shot_table
+from studies.report.computed_tables import ablation_table, codec_margins_table, codecs_table
 
 
 def put(folder: Path, name: str, rows: list[dict[str, Any]], **more: Any) -> None:
@@ -44,19 +44,3 @@ def test_the_best_codec_is_bold_and_margins_are_to_the_best_baseline(tmp_path: P
     assert "| walk | cp | - / - | - / - |" in codecs_table(tmp_path)
     # the larger file is exact in half of its bytes
     assert codec_margins_table(tmp_path).endswith("| walk | 1.00 / - / 1.00 | 1.00 / - / 1.00 † |")
-
-
-def test_zero_shot_has_groups_and_confusion(tmp_path: Path):
-    def metric(value: float) -> dict[str, Any]:
-        return {"value": value, "interval_95": [value - 0.1, value + 0.1], "baseline": {"chance": 0.2},
-                "confusion": [[3, 1], [0, 4]]}  # fmt: skip
-
-    for method, values in (("blind", (0.5,)), ("development", (0.9, 0.91, 0.88))):
-        rows = [{"dataset": {"recordings": 7}, "classes": ["a", "b"],
-                 "metrics": {key: metric(value) for key in ("window", "three_windows", "recording")}}
-                for value in values]  # fmt: skip
-        put(tmp_path, f"zero_shot/{method}", rows)
-    table = zero_shot_table(tmp_path)
-    assert "| blind | 7 | 0.500 (0.400 to 0.600)" in table
-    assert "| *second half* | 7 | 0.880" in table
-    assert "| a | 3 | 1 |" in table

@@ -13,12 +13,9 @@ RESULTS = Path(__file__).resolve().parents[3] / "results"
     ("table", "line"),
     [
         ("real_rooms", "| redwood_chair_corner | 297 | 90 % | 35 % |"),
-        ("multi_person", "*occlusion dims the second by (dB)*"),
         ("mars", "| baseline centroid | "),
-        ("motiongpt", "(oracle)"),
         ("kitml", "| understood, of all | 6,082 |"),
-        ("zero_shot_curve", "0.200 (chance)"),
-        ("zero_shot_anew", "| 238a8a56bcaa | 0 | 200 |"),
+        ("labelled_radhar", "| 0 |  | 0.882 (0.882 to 0.882) |  |"),
         ("super_resolution", "| own_cells | 1 | "),
         ("field_fidelity", "| walking | *other realization* |"),
     ],

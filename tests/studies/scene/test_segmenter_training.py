@@ -2,11 +2,21 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from mmweaver.scene.segmentation.builtin_segmenter import load_network
+from mmweaver.scene.segmentation.builtin_segmenter import GROUP_NAMES, load_network
 from studies.scene.segmenter_data import SegmenterExample, make_example
-from studies.scene.segmenter_training import TEST_KINDS, TRAIN_KINDS, SegmenterRecipe, save_weights, train
+from studies.scene.segmenter_training import (
+    TEST_KINDS,
+    TRAIN_KINDS,
+    SegmenterRecipe,
+    by_geometry,
+    confusion,
+    save_weights,
+    scores,
+    train,
+)
 
 
 @pytest.fixture(scope="module")
@@ -53,3 +63,18 @@ def test_a_stopped_training_resumes_to_the_same_end(
     _, losses = train([example] * 4, recipe, tmp_path, heard.append)
     assert losses == whole
     assert len(heard) == 2
+
+
+def test_scores_of_perfect_and_of_constant_guesses(example: SegmenterExample):
+    perfect = scores(confusion([example], lambda features: example.groups))
+    assert (perfect["miou"], perfect["right"]) == (1.0, 1.0)
+    wall = GROUP_NAMES.index("wall-other")
+    constant = scores(confusion([example], lambda features: np.full(example.groups.shape, wall)))
+    share = float((example.groups == wall).mean())
+    assert constant["iou"]["wall-other"] == pytest.approx(share, abs=1e-3)
+    assert constant["right"] == pytest.approx(share, abs=1e-3)
+
+
+def test_geometry_alone_finds_the_floor(example: SegmenterExample):
+    found = scores(confusion([example], by_geometry))
+    assert found["iou"]["floor-other"] > 0.6

@@ -85,8 +85,6 @@ def test_every_score_is_written_with_its_baselines_and_data_range(card: Scorecar
     assert rows["psnr_db"]["peak"] > 0
     assert rows["cssim"]["data_range"] > rows["psnr_db"]["peak"]
     assert rows["psnr_db"]["value"] is None
-    assert "zeros" in card.table()
-    assert len(card.table().splitlines()) == 1 + len(METRICS)
 
 
 def test_what_cannot_be_scored_is_refused(truth: RadarCube):

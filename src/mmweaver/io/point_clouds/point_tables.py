@@ -20,6 +20,7 @@ from mmweaver.io.point_clouds.ti_uart import MAGIC
 
 MAX_BYTES = 500 * MEGABYTE
 MAX_FRAME = 2**31
+ROS_NOTE = "x ahead and y to the left, ROS's axes, were turned to x right and y away"
 MMFI_COLUMNS = 5  # x, y, z, Doppler, intensity
 # column names of a CSV, reduced to letters and digits -> name here
 COLUMNS = {
@@ -64,13 +65,31 @@ def read_csv_points(path: Path) -> LoggedCloud:
     except (ValueError, IndexError):
         raise InputError(f"{path} holds a line that is not a number in each column; leave it out") from None
     column = dict(zip(at, table.reshape(-1, len(at)).T, strict=True))
+    place, is_ros = np.column_stack([column[axis] for axis in "xyz"]), _has_ros_axes(rows[0], rows[1:])
     return logged_cloud(
         _renumbered(path, column["frame"]),
-        np.column_stack([column[axis] for axis in "xyz"]),
+        place[:, [1, 0, 2]] * [-1, 1, 1] if is_ros else place,
         column["velocity"],
         snr_db=column.get("snr"),
         intensity=column.get("intensity"),
+        notes=(ROS_NOTE,) if is_ros else (),
     )
+
+
+def _has_ros_axes(header: list[str], rows: list[list[str]]) -> bool:
+    """Whether the columns are those of ti_mmwave_rospkg's RadarScan: its bearing says where x points."""
+    names = [_plain(name) for name in header]
+    if "bearing" not in names:
+        return {"pointid", "dopplerbin"} <= set(names)
+    x, y, bearing = (np.array([float(row[names.index(name)]) for row in rows if row]) for name in ("x", "y", "bearing"))
+    off_ros, off_radar = (
+        np.abs(np.abs(np.degrees(angle)) - np.abs(bearing)) for angle in (np.arctan2(y, x), np.arctan2(x, y))
+    )
+    return bool(np.median(off_ros) < np.median(off_radar)) if len(x) else True
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[^a-z0-9]", "", name.lower())
 
 
 def csv_columns(header: list[str], place: str) -> dict[str, int]:
@@ -86,7 +105,7 @@ def csv_columns(header: list[str], place: str) -> dict[str, int]:
     Raises:
         InputError: If a required column is missing.
     """
-    names = [COLUMNS.get(re.sub(r"[^a-z0-9]", "", name.lower())) for name in header]
+    names = [COLUMNS.get(_plain(name)) for name in header]
     at = {name: index for index, name in enumerate(names) if name is not None}
     if missing := [name for name in ("frame", "x", "y", "z", "velocity") if name not in at]:
         raise InputError(f"{place}: its first line must name Frame, X, Y, Z and Doppler; {missing[0]} is missing")
@@ -94,7 +113,7 @@ def csv_columns(header: list[str], place: str) -> dict[str, int]:
 
 
 def _is_mmfi(path: Path, head: bytes) -> bool:
-    return path.is_dir() or (
+    return (path.is_dir() and not (path / "metadata.yaml").is_file()) or (
         path.suffix.lower() == ".bin" and len(head) % (8 * MMFI_COLUMNS) == 0 and MAGIC not in head
     )
 

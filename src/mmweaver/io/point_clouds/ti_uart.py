@@ -7,6 +7,8 @@ contains compressed spherical points with their units. Its predecessor, 3D Peopl
 TLV lengths that include their own eight bytes; its TLV 6 equals TLV 1020. Truncated packets and packets with
 inconsistent lengths are skipped and counted.
 
+Frames are those that the board counted: packets that are missing are frames without points.
+
 Reference: mmWave SDK User Guide, "Output data sent out of the demo"; TI, 3D People Tracking, "UART output data
 format"; TI's ROS driver (sub-frame number, SDK 1 and 2); parsers of TI's Industrial Visualizer (TLV 301 and 6).
 """
@@ -21,7 +23,7 @@ import numpy as np
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.regular_files import MEGABYTE, read_bytes
-from mmweaver.io.point_clouds.point_log import LoggedCloud, logged_cloud, point_format
+from mmweaver.io.point_clouds.point_log import LoggedCloud, counted_frames, logged_cloud, point_format
 
 MAGIC = bytes([2, 1, 4, 3, 6, 5, 8, 7])
 MAX_BYTES = 2000 * MEGABYTE
@@ -30,7 +32,10 @@ COUNTING_HEADER = struct.Struct("<8sIIIIIIIIIHH")  # ..., frame, sub-frame, marg
 TLV = struct.Struct("<II")
 MAX_PACKET, MAX_TLVS = 1 << 17, 30
 MAX_PADDING = 32  # bytes after the last TLV of a packet
+COUNTING_2D_HEADER = struct.Struct("<8s10I2H")  # ..., time, length, frame, sub-frame, margins, times, TLVs, checksum
 POINTS, SIDE_INFO, COMPRESSED, SPHERICAL, COUNTED = 1, 7, 301, 1020, 6
+POINT_KINDS = frozenset((POINTS, COMPRESSED, SPHERICAL))
+OUT_OF_BOX = frozenset(range(1, 10))  # TLVs of the out-of-box demos, which omit TLV 1 from a frame without points
 MAX_KIND = 2000  # TLV type
 WITHOUT_SUB_FRAME = 0x1443  # lower half of the platform
 INTEGER_POINT_BYTES = 12
@@ -47,19 +52,20 @@ class ByteSource(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class UartLog:
-    """Points of a log, and what was skipped."""
+    """Points of a log by the board's own frames, and what was skipped."""
 
     points: LoggedCloud
-    frame_number: np.ndarray  # (frame,) counted by the board
+    frame_number: np.ndarray  # (packet,) counted by the board
     skipped: int  # damaged packets
 
 
 class Packet(NamedTuple):
-    """One packet: frame number, points (point, 6) as in `point_packets`, and its end in the data."""
+    """One packet: frame number, points (point, 6) as in `point_packets`, its end in the data, and types of its TLVs."""
 
     number: int
     points: np.ndarray
     end: int
+    kinds: frozenset[int] = frozenset()
 
 
 @point_format("ti_uart", ".dat of a TI demo's data port", lambda path, head: MAGIC in head)
@@ -78,7 +84,7 @@ def read_ti_uart(path: Path | str) -> UartLog:
         Points, frame numbers, and the number of skipped packets.
 
     Raises:
-        InputError: If it contains no packet.
+        InputError: If it contains no packet, or packets of a demo without a point cloud.
     """
     data = read_bytes(path, max_bytes=MAX_BYTES)
     packets: list[Packet] = []
@@ -90,10 +96,27 @@ def read_ti_uart(path: Path | str) -> UartLog:
         at = data.find(MAGIC, at + 1 if packet is None else packet.end)
     if not packets:
         raise InputError(f"{path} holds no packet of a TI demo's data port; log the port at its data rate, in binary")
+    kinds = frozenset().union(*(packet.kinds for packet in packets))
     table = np.concatenate([packet.points for packet in packets])
-    frame = np.repeat(np.arange(len(packets)), [len(packet.points) for packet in packets])
-    cloud = logged_cloud(frame, table[:, :3], table[:, 3], snr_db=table[:, 4], intensity=table[:, 5])
-    return UartLog(points=cloud, frame_number=np.array([packet.number for packet in packets]), skipped=skipped)
+    if not kinds & POINT_KINDS and kinds - OUT_OF_BOX:
+        raise InputError(
+            f"{path} holds {len(packets)} packets, but no point cloud: their TLVs are"
+            f" {', '.join(map(str, sorted(kinds)))}, of a demo that reports something else"
+        )
+    number = np.array([packet.number for packet in packets])
+    counted = counted_frames(number)
+    damaged = (f"{skipped} damaged packets were left out",) if skipped else ()
+    cloud = logged_cloud(
+        np.repeat(counted.frame, [len(packet.points) for packet in packets]),
+        table[:, :3],
+        table[:, 3],
+        snr_db=table[:, 4],
+        intensity=table[:, 5],
+        num_frames=counted.num_frames,
+        notes=(*counted.notes, *damaged),
+        missing=counted.missing,
+    )
+    return UartLog(points=cloud, frame_number=number, skipped=skipped)
 
 
 def point_packets(source: ByteSource, head: bytes = b"") -> Iterator[np.ndarray]:
@@ -133,6 +156,8 @@ def _packet(data: bytes, at: int) -> Packet | None:
     if at + HEADER.size > len(data):
         return None
     _, _, length, platform, number, _, objects, tlvs = HEADER.unpack_from(data, at)
+    if length > MAX_PACKET:  # the length comes later in the header of the oldest demo
+        return _counting_2d(data, at)
     end = at + length
     if not HEADER.size <= length <= MAX_PACKET or end > len(data):
         return None
@@ -141,14 +166,36 @@ def _packet(data: bytes, at: int) -> Packet | None:
         found = _tlvs(data, at + header, end, tlvs)
         points = None if found is None else _points(found, objects)
         if points is not None:
-            return Packet(number, points, end)
+            return Packet(number, points, end, frozenset(found or ()))
     if at + COUNTING_HEADER.size <= end:
         tlvs = COUNTING_HEADER.unpack_from(data, at)[-2]
         found = _tlvs(data, at + COUNTING_HEADER.size, end, tlvs, own_bytes=TLV.size)
         points = None if found is None else _points({SPHERICAL: found[COUNTED]} if COUNTED in found else {}, 0)
         if points is not None:
-            return Packet(number, points, end)
+            return Packet(
+                number, points, end, frozenset(SPHERICAL if kind == COUNTED else kind for kind in found or ())
+            )
     return None
+
+
+def _counting_2d(data: bytes, at: int) -> Packet | None:
+    """A packet of 2D People Counting (xWR16xx): TLV 6 has range, azimuth, Doppler and SNR as float32."""
+    if at + COUNTING_2D_HEADER.size > len(data):
+        return None
+    head = COUNTING_2D_HEADER.unpack_from(data, at)
+    length, number, tlvs = head[4], head[5], head[-2]
+    end = at + length
+    if not COUNTING_2D_HEADER.size <= length <= MAX_PACKET or end > len(data):
+        return None
+    found = _tlvs(data, at + COUNTING_2D_HEADER.size, end, tlvs, own_bytes=TLV.size)
+    raw = b"" if found is None else found.get(COUNTED, b"")
+    if found is None or len(raw) % 16:
+        return None
+    range_m, azimuth, velocity, snr = np.frombuffer(raw, "<f4").reshape(-1, 4).astype(float).T
+    snr_db = 10 * np.log10(np.maximum(snr, 1e-6))
+    place = [range_m * np.sin(azimuth), range_m * np.cos(azimuth), np.zeros(len(range_m))]
+    points = np.column_stack([*place, velocity, snr_db, snr])
+    return Packet(number, points, end, frozenset(SPHERICAL if kind == COUNTED else kind for kind in found))
 
 
 def _tlvs(data: bytes, at: int, end: int, count: int, own_bytes: int = 0) -> dict[int, bytes] | None:
