@@ -33,6 +33,8 @@ export class Player {
   readonly settings = remembered("mmweaver.view", { speed: 1, loop: true, moving: false, weakest: 0, layers: ["room", "points", "trail", "view", "grid"] as Layer[], maps: MAPS.map((one) => one.name) as MapName[], rays: false });
   /** Traces the paths of a frame, where there is somebody who can. */
   tracer: ((sequence: Sequence, frame: number) => Promise<Rays | null>) | null = null;
+  /** Lets a person show where a thing is that the photo does not show, where that is possible. */
+  mark: ((kind: string) => void) | null = null;
   sequence: Sequence | null = null;
   other: Sequence | null = null;
   room: RoomView | null = null;
@@ -137,7 +139,7 @@ export class Player {
     this.scene.setSequence(sequence, other);
     this.root.classList.toggle("comparing", other !== null);
     if (!isBuilt) this.build();
-    this.facts.replaceChildren(...motionLine((other ?? sequence).header.meta), ...[sequence, ...(other ? [other] : [])].flatMap(warnings), ...noiseChip(other ?? sequence));
+    this.facts.replaceChildren(...motionLine((other ?? sequence).header.meta, this.mark), ...[sequence, ...(other ? [other] : [])].flatMap(warnings), ...noiseChip(other ?? sequence));
     this.showNames();
     this.showRays();
     this.draw();

@@ -62,6 +62,7 @@ export class Studio {
     scene.onNudge = (right, ahead) => this.nudge(right, ahead);
     scene.onCorner = () => { const { ask, drawing } = this.state, at = ask.people[0].at; if (drawing && at) this.dispatch({ type: "corner", at }); };
     this.player.tracer = async (sequence, frame) => raysOf(await this.api.packed(`api/rays/${encodeURIComponent(sequence.header.result)}?frame=${frame}`));
+    this.player.mark = (kind) => this.dispatch({ type: "mark", kind });
     this.takeDrops();
     addEventListener("popstate", () => { const ask = this.askOfAddress(); if (ask && this.root.dataset.state === "ready") this.dispatch({ type: "restore", ask }); });
     document.addEventListener("keydown", (event) => this.key(event));
