@@ -3,6 +3,7 @@
 import json
 import struct
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -118,7 +119,7 @@ def test_ros_bags_that_we_export_come_back(tmp_path: Path):
 
     store = get_typestore(Stores.ROS2_HUMBLE)
     made = {name.split("/")[-1]: kind for name, kind in store.types.items()}
-    field = made["PointField"]
+    field: Any = made["PointField"]
     names = ("x", "y", "z", "velocity", "intensity")
     with Writer(tmp_path / "bag", version=9) as bag:
         link = bag.add_connection("/ti_mmwave/cloud", "sensor_msgs/msg/PointCloud2", typestore=store)
