@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.atomic_files import atomic_file
-from mmweaver.core.records import CubeGrid, PointCloud, RadarCube
 from mmweaver.core.constants import __version__
+from mmweaver.core.records import CubeGrid, PointCloud, RadarCube
 from mmweaver.io.npz_files import DiskCube, write_npz
 from mmweaver.recordings.analysis import RecordingAnalysis, recording_analysis
 from mmweaver.recordings.read_recording import Recording
