@@ -18,8 +18,10 @@ from mmweaver.core.records import AdcCube, CameraIntrinsics, PointCloud, PoseSeq
 from mmweaver.core.safe_files.safe_text import read_toml
 from mmweaver.core.skeleton import JOINT_NAMES, PARENTS
 from mmweaver.core.tensor_files import read_tensors, write_tensors
+from mmweaver.datasets.tensor_layouts import rf_genesis_settings
 from mmweaver.io.dca1000 import read_bin, write_bin
 from mmweaver.io.dca_packets import read_pcap
+from mmweaver.io.mapped_arrays import ArrayMapping, read_mapped
 from mmweaver.io.npz_files import (
     read_points_npz,
     read_poses_npz,
@@ -32,6 +34,7 @@ from mmweaver.io.radar_file import describe_radar, load_firmware, load_radar
 from mmweaver.io.raw_npy import read_adc_npy
 from mmweaver.motion.mocap.read_motion import read_motion
 from mmweaver.recordings.processing import process_recording
+from mmweaver.recordings.read_recording import read_recording
 from mmweaver.scene.photo.camera_file import intrinsics_for, read_camera_file
 from mmweaver.scene.photo.capture_photo import read_capture_photo
 from mmweaver.scene.photo.picture_files import read_depth, read_rgb
@@ -42,7 +45,9 @@ from tests.fuzz.harness import Reader, wrong_numbers
 from tests.fuzz.log_readers import log_readers
 from tests.fuzz.mesh_readers import mesh_readers
 from tests.fuzz.set_readers import set_readers
+from tests.io.test_infineon import CHIRP
 from tests.io.test_mmwave_studio import SETUP
+from tests.motion.mocap.test_c3d import markers, write_c3d
 
 WIDTH, HEIGHT = 64, 48
 STUDIO = {"mmWaveDevices": [{"rfConfig": SETUP, "rawDataCaptureConfig": {"rlDevDataFmtCfg_t": {"iqSwapSel": 0}}}]}
@@ -90,6 +95,20 @@ def _radars() -> list[Reader]:
             damaged=lambda rng: _json_of(rng.choice(presets), rng),
         ),
         Reader(name="TI cfg", suffix=".cfg", read=ti, wrong=_wrong_radar, damaged=lambda rng: _text_of(cfg, rng)),
+        Reader(
+            name="Infineon config",
+            suffix=".json",
+            read=studio,
+            wrong=_wrong_radar,
+            damaged=lambda rng: _json_of({"device_config": {"fmcw_single_shape": CHIRP}}, rng),
+        ),
+        Reader(
+            name="RF-Genesis config",
+            suffix=".json",
+            read=studio,
+            wrong=_wrong_radar,
+            damaged=lambda rng: _json_of(rf_genesis_settings(PRESETS["mmmesh"]), rng),
+        ),
         Reader(
             name="mmWave Studio json",
             suffix=".mmwave.json",
@@ -213,6 +232,8 @@ def _recordings(folder: Path, config: Any, adc: AdcCube) -> list[Reader]:
     packets = captures.packets_of(folder, adc)
     samples = adc.samples[:1].transpose(0, 1, 2, 3, 4)
     axes = "frame,loop,tx,rx,sample"
+    headed = b"".join(payload for _, payload in packets)
+    mapping = ArrayMapping(path=folder / "map.toml", axes=axes)
 
     def pcap(rng: random.Random) -> bytes:
         if rng.random() < 0.5:
@@ -243,6 +264,20 @@ def _recordings(folder: Path, config: Any, adc: AdcCube) -> list[Reader]:
             read=lambda path: read_bin(path, config).samples,
             wrong=wrong_numbers,
             damaged=lambda rng: m.mutated_bytes(raw, rng),
+        ),
+        Reader(
+            name="packets with headers",
+            suffix=".bin",
+            read=lambda path: read_recording(path, config).adc.samples,
+            wrong=wrong_numbers,
+            damaged=lambda rng: m.mutated_bytes(headed, rng),
+        ),
+        Reader(
+            name="mapped npy",
+            suffix=".npy",
+            read=lambda path: read_mapped(path, mapping, config).samples,
+            wrong=wrong_numbers,
+            damaged=lambda rng: m.mutated_npy(samples, rng),
         ),
         Reader(
             name="samples npy",
@@ -377,6 +412,8 @@ def _others(folder: Path) -> list[Reader]:
     write_tensors(folder / "t.safetensors", {"a": torch.arange(12.0).reshape(3, 4), "b": torch.ones(5)}, {"card": "{}"})
     tensors = (folder / "t.safetensors").read_bytes()
     bvh = _bvh()
+    write_c3d(folder / "walk.c3d", markers())
+    c3d = (folder / "walk.c3d").read_bytes()
     toml = 'frames = 20\nseed = 3\ntext = ["a person waves"]\nat = [0.5, 2.0]\nradar = "awr1843"\n'
 
     def motion(fps: float | None) -> Callable[[Path], Any]:
@@ -403,6 +440,13 @@ def _others(folder: Path) -> list[Reader]:
             read=motion(None),
             wrong=wrong_numbers,
             damaged=lambda rng: _text_of(bvh, rng),
+        ),
+        Reader(
+            name="motion c3d",
+            suffix=".c3d",
+            read=motion(None),
+            wrong=wrong_numbers,
+            damaged=lambda rng: m.mutated_bytes(c3d, rng),
         ),
         Reader(
             name="safetensors",

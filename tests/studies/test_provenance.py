@@ -5,7 +5,6 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from studies.provenance import hardware, provenance
 
 from mmweaver.core.constants import __version__
 from studies.manifest import hardware, provenance
