@@ -22,6 +22,7 @@ MAX_BYTES = 500 * MEGABYTE
 MAX_FRAME = 2**31
 ROS_NOTE = "x ahead and y to the left, ROS's axes, were turned to x right and y away"
 MMFI_COLUMNS = 5  # x, y, z, Doppler, intensity
+TIMES = ("timestamp", "time", "times", "timems")  # columns that count frames where no other does
 # column names of a CSV, reduced to letters and digits -> name here
 COLUMNS = {
     "frame": "frame",
@@ -65,6 +66,8 @@ def read_csv_points(path: Path) -> LoggedCloud:
     except (ValueError, IndexError):
         raise InputError(f"{path} holds a line that is not a number in each column; leave it out") from None
     column = dict(zip(at, table.reshape(-1, len(at)).T, strict=True))
+    if _plain(rows[0][at["frame"]]) in TIMES:  # points of one time are a frame
+        column["frame"] = np.cumsum(np.diff(column["frame"], prepend=column["frame"][:1]) != 0)
     place, is_ros = np.column_stack([column[axis] for axis in "xyz"]), _has_ros_axes(rows[0], rows[1:])
     return logged_cloud(
         _renumbered(path, column["frame"]),
@@ -107,6 +110,9 @@ def csv_columns(header: list[str], place: str) -> dict[str, int]:
     """
     names = [COLUMNS.get(_plain(name)) for name in header]
     at = {name: index for index, name in enumerate(names) if name is not None}
+    by_time = [index for index, name in enumerate(header) if _plain(name) in TIMES]
+    if "frame" not in at and by_time:
+        at = {"frame": by_time[0], **at}
     if missing := [name for name in ("frame", "x", "y", "z", "velocity") if name not in at]:
         raise InputError(f"{place}: its first line must name Frame, X, Y, Z and Doppler; {missing[0]} is missing")
     return at
