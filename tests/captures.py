@@ -3,7 +3,6 @@
 import io
 import json
 import struct
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -121,8 +120,3 @@ def write_radar(folder: Path, adc: AdcCube, packets: list[Packet] | None = None,
     (folder / "radar.cfg").write_text(CFG)
     (folder / "dca.json").write_text("{}")
     (folder / "dca.pcap").write_bytes(pcap_of(packets_of(folder, adc) if packets is None else packets, **options))
-
-
-def in_file_order(adc: AdcCube) -> AdcCube:
-    """As a reader gives it: counts, scale unknown."""
-    return replace(adc, scale=float("nan"))

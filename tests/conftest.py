@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from mmweaver.core.board import Board
     from mmweaver.core.radar_config import RadarConfig
     from mmweaver.core.records import RadarCube, RgbdPhoto, Scene
-    from mmweaver.models.neural_path_solver import LearnedRoom
 
 # Many tests start processes, which would each compile the package anew.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
@@ -72,7 +71,7 @@ def blank_training_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     """
     for module, name in (
         ("mmweaver.training.network_training", "draw_sheet"), ("mmweaver.training.activity_training", "draw_confusion"),
-        ("studies.paper.paper_training", "draw_sheet"),
+        ("mmweaver.training.hypernetwork_training", "draw_sheet"),
     ):  # fmt: skip
         monkeypatch.setattr(f"{module}.{name}", lambda *_, **__: np.zeros((2, 2, 3), np.uint8))
 
@@ -102,11 +101,11 @@ def rooms_are_reconstructed_once() -> Iterator[None]:
         return scenes[key]
 
     encode = Learned._encode
-    encoded: dict[Any, tuple[Scene, LearnedRoom]] = {}
+    encoded: dict[Any, tuple[Scene, Any]] = {}
 
     def encoded_once(
         self: Learned, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None
-    ) -> LearnedRoom:
+    ) -> Any:
         if self.weights is not None or background is not None:
             return encode(self, scene, config, background, board)
         key = id(scene), config, self.propagation, None if board is None else board.digest

@@ -5,34 +5,33 @@ import zlib
 
 import numpy as np
 import torch
+from torch.nn.utils import parameters_to_vector, vector_to_parameters
 
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
+from mmweaver.inr import InrField, ModulatedINR
+from mmweaver.inr.fitting import NUM_VALUES, layers_network
 from studies.baselines.codec_interface import Codec
-from studies.paper.paper_inr import InrField
-from studies.paper.single_signal import RECIPES, fit, inr_shape
+from studies.fields.inr_variants import INRS, fit_inr
 
 ROW = 64  # so many weights share a scale
 LEVELS = (127, 100, 80, 63)  # the finest that fits: scales take a little of the 8 bits a weight
 
 
 class InrInBytes(Codec):
-    """The INR of a recipe, fitted once a cube; only sizes that hold its 10,018 weights in 8 bits are possible."""
+    """A modulated INR, fitted once per cube; only sizes that hold its 10,018 weights in 8 bits are possible."""
 
-    def __init__(self, recipe: str):
-        self.recipe = RECIPES[recipe]
-        self.name = f"inr_{recipe}"
+    def __init__(self, name: str):
+        _, self.options = INRS[name]
+        self.inr, self.name = name, f"inr_{name}"
         self._last: tuple[int, InrField] | None = None
 
     def encoded(self, cube: RadarCube, num_bytes: int) -> bytes | None:
         key = id(cube)
         if self._last is None or self._last[0] != key:
-            field = fit(cube, self.recipe).field
-            assert isinstance(field, InrField)
-            self._last = key, field
+            self._last = key, fit_inr(cube, self.inr)[0]
         field = self._last[1]
-        parts = [field.theta.flatten(), field.gamma.flatten() - 1, field.beta.flatten()]
-        weights = torch.cat(parts).numpy()
+        weights = (parameters_to_vector(field.network.parameters()) - self._identity(cube)).numpy()
         if num_bytes >= 2 * len(weights) + 8:
             words = b"\x02" + weights.astype("<f2").tobytes()
         else:
@@ -44,17 +43,20 @@ class InrInBytes(Codec):
         weights = (
             np.frombuffer(data[5:], "<f2").astype(np.float32) if data[4] == 2 else _whole(zlib.decompress(data[5:]))
         )
-        shape = inr_shape(self.recipe, like.grid.shape)
-        frames = len(like.grid.frame_time_s)
-        theta, rest = np.split(weights, [shape.num_weights])
-        gamma, beta = np.split(rest, 2)
+        network = layers_network("modulated", like.grid.shape, NUM_VALUES, self.options).requires_grad_(False)
+        vector_to_parameters(torch.from_numpy(weights.copy()) + self._identity(like), network.parameters())
         field = InrField(
-            config=like.config, grid=like.grid, scale=like.scale, shape=shape, theta=torch.from_numpy(theta.copy()),
-            gamma=torch.from_numpy(gamma.copy()).reshape(frames, 4, -1) + 1,
-            beta=torch.from_numpy(beta.copy()).reshape(frames, 4, -1),
-            amplitude=amplitude, is_centred=self.recipe.is_centred,
+            network, config=like.config, grid=like.grid, scale=like.scale, amplitude=amplitude,
+            is_centred=self.options.is_centred,
         )  # fmt: skip
-        return field.on_grid(like.grid)
+        return field.cube(like.grid).values
+
+    def _identity(self, cube: RadarCube) -> torch.Tensor:
+        """What a network has before training where it does not learn: ones for gamma, zeros elsewhere."""
+        network = layers_network("modulated", cube.grid.shape, NUM_VALUES, self.options).requires_grad_(False)
+        assert isinstance(network, ModulatedINR)
+        network.theta.zero_()
+        return parameters_to_vector(network.parameters())
 
 
 def _packed(weights: np.ndarray, levels: int) -> bytes:

@@ -7,6 +7,7 @@ import argparse
 import time
 from collections.abc import Callable
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +16,8 @@ from mmweaver.compression.scatterers.fitting import FitRecipe as ScattererRecipe
 from mmweaver.compression.signal_field import SignalField
 from mmweaver.core.records import RadarCube
 from studies.fields.field_signals import RECORDED, SIGNALS, StudySignal
+from studies.fields.inr_variants import INRS, fit_inr
 from studies.manifest import StudyRun
-from studies.paper.single_signal import RECIPES, fit
 from studies.result_rows import complete_rows
 from studies.scores.scorecard import scorecard
 from studies.study import Reads
@@ -66,16 +67,6 @@ def size_of(field: SignalField) -> dict[str, Any]:
     }
 
 
-def recipe_fitter(name: str, seed: int = 0) -> Fitter:
-    """The paper's INR by one of the recipes."""
-
-    def make(cube: RadarCube) -> tuple[SignalField, float]:
-        result = fit(cube, RECIPES[name], seed=seed)
-        return result.field, result.seconds
-
-    return make
-
-
 def scatterer_recipe(cube: RadarCube) -> ScattererRecipe:
     """Scatterers, static layer and gains in at most as many values as the paper's INR of 20 frames."""
     return ScattererRecipe(
@@ -99,16 +90,16 @@ def measure_scatterers(run: StudyRun, signal_names: tuple[str, ...], data: Path 
 
 def measure_inr(
     run: StudyRun,
-    recipe_names: tuple[str, ...],
+    inr_names: tuple[str, ...],
     signal_names: tuple[str, ...],
     data: Path | None,
 ) -> list[Path]:
-    """Every recipe on every signal; one file a recipe."""
+    """Every INR on every signal; one file per INR."""
     signals = [SIGNALS[name](data) for name in signal_names]
     paths = []
-    for name in recipe_names:
-        rows = [fidelity_row(signal, recipe_fitter(name)) for signal in signals]
-        config = asdict(RECIPES[name])
+    for name in inr_names:
+        rows = [fidelity_row(signal, partial(fit_inr, name=name)) for signal in signals]
+        config = {"field": INRS[name][0], **asdict(INRS[name][1])}
         paths.append(run.write(EXPERIMENT, f"inr_{name}", config=config, rows=complete_rows(rows)))
     return paths
 
@@ -117,7 +108,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--data", type=Path, action=Reads, default=None, help="folder of recordings (with radar/ in it)"
     )
-    parser.add_argument("--recipes", nargs="*", default=["paper", "smooth_short"])
+    parser.add_argument("--inrs", nargs="*", default=["paper", "base", "modulated"], choices=list(INRS))
     parser.add_argument("--without-scatterers", action="store_true")
     parser.add_argument("--signals", nargs="*", default=None)
 
@@ -125,7 +116,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     every = [name for name in SIGNALS if options.data is not None or name not in RECORDED]
     names = tuple(options.signals or every)
-    if options.recipes:
-        measure_inr(run, tuple(options.recipes), names, options.data)
+    if options.inrs:
+        measure_inr(run, tuple(options.inrs), names, options.data)
     if not options.without_scatterers:
         measure_scatterers(run, names, options.data)

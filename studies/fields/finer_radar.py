@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mmweaver.compression.signal_field import antenna_at, centred, centring_phasor, coordinates_on
+from mmweaver.compression.signal_field import antenna_at, coordinates_on
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube
@@ -107,3 +107,21 @@ def _whole(number: float) -> int:
     if abs(number - round(number)) > 1e-6:
         raise InputError(f"{number:g} is no whole number of samples, loops or bins; choose another factor")
     return round(number)
+
+
+def centring_phasor(config: RadarConfig, grid: CubeGrid) -> np.ndarray:
+    """exp(+j pi r) exp(+j pi d) at the cells of a grid, with r and d in bins of the radar's own transforms.
+
+    The phase of the DFT of a window centred on sample N/2 rotates by -pi per bin; referred to the middle of the window
+    instead, a cube is smooth. r counts range bins of the radar's full transform, and d from zero Doppler, so cubes of
+    radars with the same centre frequency agree after centring.
+    """
+    range_bin = grid.range_m / config.range_resolution_m
+    doppler_bin = grid.radial_velocity_mps / config.velocity_resolution_mps
+    return np.exp(1j * np.pi * (range_bin[:, None] + doppler_bin[None, :])).astype(np.complex64)
+
+
+def centred(cube: RadarCube) -> RadarCube:
+    """The cube with its phase referred to the middle of the chirp and of the frame; lossless."""
+    phasor = centring_phasor(cube.config, cube.grid)
+    return replace(cube, values=cube.values * phasor[None, :, :, None])

@@ -27,7 +27,7 @@ import numpy as np
 
 from mmweaver.compression.scatterer_field import ScattererField
 from mmweaver.compression.scatterers.fitting import FitRecipe as ScattererRecipe
-from mmweaver.compression.signal_field import SignalField, centred, centring_phasor, finer_grid, sampled_grid
+from mmweaver.compression.signal_field import SignalField, finer_grid, sampled_grid
 from mmweaver.core.boards import AWR1843
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube
@@ -37,6 +37,8 @@ from mmweaver.signal.cube import adc_from_cube, radar_cube
 from studies.fields.field_fidelity import PAPER_VALUES
 from studies.fields.field_signals import pose_of, sample_scene, simulator_of, without_room
 from studies.fields.finer_radar import (
+    centred,
+    centring_phasor,
     interpolated,
     middle_delay_s,
     more_antennas,
@@ -45,8 +47,8 @@ from studies.fields.finer_radar import (
     spectrum_on,
     starting_later,
 )
+from studies.fields.inr_variants import INRS, fit_inr
 from studies.manifest import StudyRun
-from studies.paper.single_signal import RECIPES, fit
 from studies.result_rows import complete_rows
 from studies.scores.cube_scores import BASELINES, cells_of, nmse_db
 from studies.scores.scorecard import METRICS, scorecard
@@ -60,7 +62,7 @@ FINER_RADARS: dict[str, Callable[[RadarConfig, float], RadarConfig]] = {
 }
 NUM_FRAMES = 8
 PAPER_FRAMES = 20
-RECIPE_NAMES = ("paper", "raw_short", "relu_short", "tuned_short", "smooth_short", "siren_short")
+INR_NAMES = ("paper", "raw_short", "relu_short", "tuned_short", "smooth_short", "siren_short", "modulated")
 Sampler = Callable[[CubeGrid], CubeValues]
 Renderer = Callable[[RadarConfig, float], RadarCube]  # another radar, its first frame so much later (s)
 Row = dict[str, Any]
@@ -89,25 +91,24 @@ def _lines(cube: RadarCube, is_centred: bool) -> Sampler:
 
 def field_method(name: str, settings: dict[str, Any], make: Callable[[RadarCube], SignalField]) -> UpsamplingMethod:
     """Any field as a method of this study."""
-    return UpsamplingMethod(name=name, make=lambda cube: make(cube).on_grid, settings=settings)
+    return UpsamplingMethod(name=name, make=lambda cube: make(cube).values_on, settings=settings)
 
 
-def methods(recipe_names: tuple[str, ...]) -> list[UpsamplingMethod]:
-    """The baselines, and the paper's INR under the recipes named."""
+def methods(inr_names: tuple[str, ...]) -> list[UpsamplingMethod]:
+    """The baselines, and INRs by name."""
     baselines = [
         UpsamplingMethod(name="zero_padding", make=_zero_padding, settings={}),
         UpsamplingMethod(name="linear_raw", make=partial(_lines, is_centred=False), settings={}),
         UpsamplingMethod(name="linear_centred", make=partial(_lines, is_centred=True), settings={}),
     ]
-    fits = [RECIPES[name] for name in recipe_names]
     settings = asdict(_scatterer_recipe(NUM_FRAMES))
     baselines += [
         field_method("scatterers", settings, _scatterers),
         UpsamplingMethod(name="scatterers_rendered", make_renderer=_scatterer_renderer, settings=settings),
     ]
     return baselines + [
-        field_method(f"inr_{recipe.name}", asdict(recipe), lambda cube, recipe=recipe: fit(cube, recipe).field)
-        for recipe in fits
+        field_method(f"inr_{name}", asdict(INRS[name][1]), lambda cube, name=name: fit_inr(cube, name)[0])
+        for name in inr_names
     ]
 
 
@@ -149,7 +150,7 @@ def between_bins(sampler: Sampler, cube: RadarCube, adc: AdcCube, factor: float)
 
 def sampled_places(sampler: Sampler, cube: RadarCube, adc: AdcCube, radius: int) -> Row:
     """Errors at ranges and velocities sampled within the paper's sampling radius, against the spectrum there."""
-    grid = replace(sampled_grid(cube.grid, radius, seed=0), antenna_position_m=cube.grid.antenna_position_m)
+    grid = replace(sampled_grid(cube.grid, radius / 8, seed=0), antenna_position_m=cube.grid.antenna_position_m)
     truth = replace(cube, values=spectrum_on(adc, grid), grid=grid)
     return _row(
         "sampled_places", float(radius), {"nmse_db": _entry("nmse_db", sampler(grid), truth, "sampled positions")}
@@ -163,10 +164,10 @@ def against_finer_radar(sampler: Sampler, truth: RadarCube, coarse: RadarConfig)
     return scorecard(prediction, centred(truth)).as_json()
 
 
-def measure(run: StudyRun, recipe_names: tuple[str, ...], factors: tuple[float, ...] = FACTORS) -> list[Path]:
+def measure(run: StudyRun, inr_names: tuple[str, ...], factors: tuple[float, ...] = FACTORS) -> list[Path]:
     """Scores every method on every question and writes one file each."""
     coarse, finer_cubes = finer_truths(factors)
-    return [_run_method(method, coarse, finer_cubes, factors, run) for method in methods(recipe_names)]
+    return [_run_method(method, coarse, finer_cubes, factors, run) for method in methods(inr_names)]
 
 
 def finer_truths(
@@ -245,7 +246,7 @@ def _entry(
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--recipes", nargs="*", default=list(RECIPE_NAMES))
+    parser.add_argument("--recipes", nargs="*", default=list(INR_NAMES))
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:

@@ -27,12 +27,15 @@ from torch import nn
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import StoredRoom, plan_text, read_plan, read_rooms
+from mmweaver.models.hypernetwork_rooms import load_hypernetwork
+from mmweaver.models.power_network import PowerNetwork
 from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.propagation.mean_power import PowerMaps
 from mmweaver.propagation.radar_equation import points_of
 from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.training.hypernetwork_training import HypernetworkRecipe, initial_power_network, measure_codes
 from mmweaver.training.network_examples import ExpectedMaps, NetworkBatch, RoomExamples
 from mmweaver.training.network_loss import Targets
 from mmweaver.training.network_training import VALIDATION_SEED, NetworkLearner, TrainingRecipe, batch_sampler
@@ -43,9 +46,6 @@ from studies.network.ablated_network import AblatedNetwork
 from studies.network.ablation_variants import HYPERNETWORK, VARIANTS, WHOLE, AblationVariant
 from studies.network.learned_scores import OTHER, Case, Method, cases_of, interval, learned, simulated
 from studies.network.room_cache import RoomCache, digest
-from studies.paper.power_method import load_power
-from studies.paper.power_network import PowerNetwork
-from studies.paper.power_training import PowerRecipe, initial_power_network, measure_codes
 from studies.result_rows import complete_rows, dataset_of
 from studies.scores.scorecard import METRICS, Representations
 from studies.study import Reads
@@ -141,7 +141,7 @@ def trained(variant: AblationVariant, material: AblationMaterial, out: Path, rec
 def network_of(variant: AblationVariant) -> ScattererNetwork:
     """The variant's network before training."""
     if variant.power:
-        return initial_power_network(PowerRecipe())
+        return initial_power_network(HypernetworkRecipe())
     return AblatedNetwork(variant.without)
 
 
@@ -301,7 +301,8 @@ def _evaluator(
         if shared not in trained_before:
             return trained(variant, material, runs / slug(shared), recipe)
         file = trained_before[shared]
-        network, _ = load_power(file) if variant.power else load_weights(file)
+        network, _ = load_hypernetwork(file) if variant.power else load_weights(file)
+        assert isinstance(network, ScattererNetwork), "weights of target power"
         return NetworkLearner(network, material.cases[0].room.config)
 
     @cache

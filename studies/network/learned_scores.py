@@ -35,7 +35,9 @@ from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.datasets.room_generation import generate_sequence, pose_of
 from mmweaver.evaluation.background_board import BackgroundBoard
 from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.models.hypernetwork_rooms import FieldRoom, load_hypernetwork
 from mmweaver.models.neural_path_solver import LearnedRoom
+from mmweaver.models.power_network import PowerNetwork
 from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.propagation.diffuse_clutter import seed_of_room
@@ -45,11 +47,9 @@ from mmweaver.propagation.static_paths import ALL_PATHS, Propagation
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.signal.cube import radar_cube
+from mmweaver.training.hypernetwork_training import HypernetworkRecipe, initial_power_network
 from studies.manifest import StudyRun
 from studies.network.room_cache import RoomCache, digest
-from studies.paper.power_method import FieldRoom, load_power
-from studies.paper.power_network import PowerNetwork
-from studies.paper.power_training import PowerRecipe, initial_power_network
 from studies.result_rows import complete_rows, dataset_of
 from studies.scores.scorecard import METRICS, scorecard
 from studies.study import Reads
@@ -310,7 +310,7 @@ def cases_of(
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, action=Reads, required=True)
     parser.add_argument("--weights", type=Path, action=Reads, help="of recipe weaver (default: those included)")
-    parser.add_argument("--power", type=Path, action=Reads, help="of recipe paper_power, for a row of its own")
+    parser.add_argument("--power", type=Path, action=Reads, help="of target power, for a row of its own")
     parser.add_argument("--split", default="test_room")
     parser.add_argument("--each", type=int, default=1, help="sequences of each room")
     parser.add_argument("--most", type=int, help="rooms, sampled at random (default: all that have the split)")
@@ -338,10 +338,11 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     }
     about = {"weights": card.__dict__, "data_plan": plan, "each": options.each}
     if options.power is not None:
-        power, power_card = load_power(options.power)
+        power, power_card = load_hypernetwork(options.power)
+        assert isinstance(power, PowerNetwork), "weights of target power"
         methods["paper_power"] = learned(power, lambda case: case.room)
         methods["paper_power_wrong_photo"] = learned(power, lambda case: case.other)
-        recipe = PowerRecipe(is_anchored=bool(power_card.settings.get("is_anchored", True)))
+        recipe = HypernetworkRecipe()
         methods["paper_power_untrained"] = learned(initial_power_network(recipe).eval(), lambda case: case.room)
         about["paper_power"] = power_card.__dict__
     names = [f"{case.room.kind}_{case.room.layout}" for case in cases]

@@ -5,7 +5,7 @@
     python -m studies run paper --table signal --measure --data data/
 
 `--measure` runs the item's study anew; all options after it are the study's own. Items are declared in
-`studies/report/paper_items.toml`, and docs/evidence/paper.md shows them.
+`studies/report/paper_items.toml`, and docs/paper.md shows them.
 """
 
 import argparse

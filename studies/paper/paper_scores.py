@@ -1,4 +1,4 @@
-"""Scores of the recipe `paper` in rooms it has never seen; baselines are all zeros and the static mean.
+"""Scores of a hypernetwork of target signal in rooms it has never seen; baselines are all zeros and the static mean.
 
     python -m studies run paper_scores --data DATASET --weights PAPER
 
@@ -18,11 +18,13 @@ import torch
 
 from mmweaver.core.records import RadarCube
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
-from mmweaver.models.weights import load_into
+from mmweaver.models.hypernetwork import HyperNetwork
+from mmweaver.models.hypernetwork_rooms import load_hypernetwork
+from mmweaver.models.scene_tensors import SceneTensors
+from mmweaver.scene.reconstruction import reconstruct
 from studies.manifest import StudyRun
 from studies.network.learned_scores import Case, cases_of, energy_db, interval
 from studies.network.room_cache import RoomCache, digest
-from studies.paper.paper_method import RECIPE, paper_method
 from studies.result_rows import complete_rows, dataset_of
 from studies.scores.scorecard import METRICS, scorecard
 from studies.study import Reads
@@ -32,6 +34,18 @@ PAPER, LOG = "paper", "log.jsonl"
 
 
 Scores = dict[str, dict[str, float]]  # {row: {column: value}} of one case
+
+
+def paper_method(weights: Path) -> Callable[[Any], RadarCube]:
+    """The cube of a `Case`, from room.photo, room.config and joints."""
+    network, _ = load_hypernetwork(weights)
+    assert isinstance(network, HyperNetwork), "weights of target signal"
+
+    def method(case: Any) -> RadarCube:
+        image = SceneTensors.of(reconstruct(case.room.photo), case.room.config).image
+        return network.field(image, case.room.config, *case.joints).cube()
+
+    return method
 
 
 def scores_of(
@@ -84,7 +98,9 @@ def learning_curve(folder: Path) -> list[dict[str, Any]]:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, action=Reads, required=True)
-    parser.add_argument("--weights", type=Path, action=Reads, required=True, help="of recipe paper")
+    parser.add_argument(
+        "--weights", type=Path, action=Reads, required=True, help="of mmweaver train hypernetwork --target signal"
+    )
     parser.add_argument("--split", default="test_room")
     parser.add_argument("--each", type=int, default=3, help="sequences of each room")
     parser.add_argument("--most", type=int, help="rooms, sampled at random (default: all that have the split)")
@@ -93,14 +109,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
-    from studies.paper.paper_network import PaperNetwork
-
     torch.set_num_threads(1)
     plan = read_plan(options.data)
     cases = cases_of(read_rooms(options.data), options.split, options.each, plan, 0, options.most)
     cache = RoomCache(options.runs, {"data_plan": plan, "weights": digest(options.weights)})
     rows = rows_of(scores_of(cases, paper_method(options.weights), cache), cases)
-    card = load_into(PaperNetwork(), options.weights, recipe=RECIPE)
+    _, card = load_hypernetwork(options.weights)
     complete = complete_rows(
         rows, dataset={**dataset_of(options.data), "split": options.split}, seeds=[0],
         baselines=("zeros", "static_mean"),

@@ -10,10 +10,12 @@ from mmweaver.cli.main import main
 from mmweaver.core.boards import ANTENNAS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
+from mmweaver.inr import fit
 from mmweaver.io.dca1000 import upright, write_bin
 from mmweaver.io.radar_options import RadarOptions
 from tests.advice.harness import Row, Step, Try, Words, add, drop, edit, first, flag, instead, plus
 from tests.captures import counts, packets_of, pcap_of, radar_of_cfg
+from tests.cubes import point_cube
 from tests.io.test_peer_arrays import hupr_array, simulated_frame
 from tests.recordings.test_plausibility import RADAR, room
 
@@ -29,6 +31,14 @@ def _written(name: str, content: str = "mine") -> None:
 def _as_npy() -> None:
     words = np.fromfile("numbers.bin", "<f4").reshape(2, 16, 3, 4, 64, 2)
     np.save("numbers.npy", (words[..., 0] + 1j * words[..., 1]).astype(np.complex64))
+
+
+def _field() -> None:
+    fit(point_cube(num_frames=2), "scatterers", num_values=1_500).save("field.safetensors")
+
+
+def _of_the_field(words: Words, message: str) -> list[Words]:
+    return [[words[0], "field.safetensors", *words[2:]]]
 
 
 def _floats() -> None:
@@ -160,10 +170,7 @@ ROWS = (
     Row(
         "the echoes of a chirp gather at fewer ranges",
         f"{PROCESS} --overwrite --radar-set lanes=4",
-        (
-            plus("--radar-set lanes=2", "--radar-set", "lanes=2"),
-            instead("another --radar", "--radar-set lanes=4"),
-        ),
+        (plus("--radar-set lanes=2", "--radar-set", "lanes=2"), instead("another --radar", "--radar-set lanes=4")),
     ),
     Row("the transmitters fit the static echoes to", f"{PROCESS} --overwrite --tx-order 2,0,1", (add("--tx-order"),)),
     Row(
@@ -196,10 +203,7 @@ ROWS = (
     Row(
         "give --layout mmmesh or rf_genesis",
         "process {mmmesh} --radar mmmesh --no-pictures --no-analysis --out out",
-        (
-            add("--layout"),
-            plus("or rf_genesis", "--layout", "rf_genesis"),
-        ),
+        (add("--layout"), plus("or rf_genesis", "--layout", "rf_genesis")),
     ),
     Row("name its kind with --layout", "points {points_log} -o out.npz", (add("--layout", "csv"),)),
     # radars
@@ -220,9 +224,7 @@ ROWS = (
         (plus("--radar-set subframe=N", "--radar-set", "subframe=0"),),
     ),
     Row(
-        "it has one plain frame and no sub-frames",
-        "radar {best_range} --radar-set subframe=0",
-        (drop("--radar-set"),),
+        "it has one plain frame and no sub-frames", "radar {best_range} --radar-set subframe=0", (drop("--radar-set"),)
     ),
     Row(
         "has no sub-frames; leave out --radar-set subframe=",
@@ -258,19 +260,13 @@ ROWS = (
     Row(
         "exists; choose another name or allow it with --overwrite",
         "points {points} -o out.npz",
-        (
-            instead("choose another name", "out.npz", "other.npz"),
-            flag("--overwrite"),
-        ),
+        (instead("choose another name", "out.npz", "other.npz"), flag("--overwrite")),
         before=lambda: _written("out.npz"),
     ),
     Row(
         "exists and is not empty; choose another --out",
         PROCESS,
-        (
-            instead("choose another --out", "out", "other"),
-            flag("--overwrite"),
-        ),
+        (instead("choose another --out", "out", "other"), flag("--overwrite")),
         before=lambda: _written("out/meta.json"),
     ),
     Row(
@@ -291,14 +287,7 @@ ROWS = (
         before=lambda: _written("out"),
     ),
     # compressed files
-    Row(
-        "say how small with --bytes",
-        COMPRESS,
-        (
-            add("--bytes", "4000"),
-            add("--quality", "30"),
-        ),
-    ),
+    Row("say how small with --bytes", COMPRESS, (add("--bytes", "4000"), add("--quality", "30"))),
     Row("--append adds to a .mmw file", f"{COMPRESS} --append --quality 30 --overwrite", (drop("--overwrite"),)),
     Row(
         "a cube has --quality, and is stored exactly",
@@ -403,5 +392,18 @@ ROWS = (
         "□ is a file; give a folder of mmweaver generate or mmweaver process",
         "view {rgb} -o page.html --no-browser",
         (instead("give a folder of mmweaver generate", "{rgb}", "{walk}"),),
+    ),
+    Row("where to write the signal of", "sample field.safetensors --finer 2,1,1", (add("--out", "finer.npz"),), _field),
+    Row("is no field; give a .safetensors", "sample room --finer 2,1,1 --out a.npz", (_of_the_field,), _field),
+    Row("holds no field; give a file", "sample {weights} --finer 2,1,1 --out a.npz", (_of_the_field,), _field),
+    Row(
+        "are of networks; leave them out",
+        "fit {walk}/radar.npz --field scatterers --steps 5 --values 60000 -o a.safetensors",
+        (drop("--steps"),),
+    ),
+    Row(
+        "--sequence is of a set; leave it out",
+        "fit {walk}/radar.npz --field scatterers --sequence 1 --values 60000 -o a.safetensors",
+        (drop("--sequence"),),
     ),
 )

@@ -7,7 +7,8 @@ from tests.advice.harness import Row, add, drop, flag, instead
 SHORT = "--frames 1 --no-pictures --out out"
 DEMO = f"generate --demo {SHORT}"
 PHOTO = "--rgb {rgb} --depth {depth} --camera {camera}"
-OWN = f"generate {PHOTO} --text 'a person waves' {SHORT}"
+
+
 BATCH = f"generate --demo --texts {{texts}} {SHORT}"
 STREAM = f"generate --demo --stream --text 'a person waves' {SHORT}"
 
@@ -25,18 +26,12 @@ ROWS = (
     Row(
         "--demo brings its own room",
         f"{DEMO} {PHOTO} --text 'a person waves'",
-        (
-            drop("--rgb", "--depth", "--camera"),
-            drop("--demo"),
-        ),
+        (drop("--rgb", "--depth", "--camera"), drop("--demo")),
     ),
     Row(
         "which room? give --rgb and --depth",
         f"generate --text 'a person waves' {SHORT}",
-        (
-            flag("--demo"),
-            add("--rgb", "{rgb}", "--depth", "{depth}", "--camera", "{camera}"),
-        ),
+        (flag("--demo"), add("--rgb", "{rgb}", "--depth", "{depth}", "--camera", "{camera}")),
     ),
     Row(
         "--rgb needs --depth too",
@@ -61,18 +56,12 @@ ROWS = (
     Row(
         "are no numbers of photos",
         f"generate --room {{scan}} --extra-views many --text 'a person waves' {SHORT}",
-        (
-            instead("write 60,120,180", "many", "60,120,180"),
-            instead("or auto", "many", "auto"),
-        ),
+        (instead("write 60,120,180", "many", "60,120,180"), instead("or auto", "many", "auto")),
     ),
     Row(
         "what does the person do? give --text",
         f"generate {PHOTO} {SHORT}",
-        (
-            add("--text"),
-            add("--motion", "{motion}", "--motion-set", "fps=30"),
-        ),
+        (add("--text"), add("--motion", "{motion}", "--motion-set", "fps=30")),
     ),
     Row(
         "where to? give --out",
@@ -94,10 +83,7 @@ ROWS = (
     Row(
         "--motion is a recorded motion",
         f"{DEMO} --motion {{clip}} --motion-model {{model}} --text 'a person waves'",
-        (
-            instead("give one of them", "--motion {clip}"),
-            instead("give one of them", "--motion-model {model}"),
-        ),
+        (instead("give one of them", "--motion {clip}"), instead("give one of them", "--motion-model {model}")),
     ),
     Row(
         "--motion-model acts out a text; give --text",
@@ -115,10 +101,7 @@ ROWS = (
     Row(
         "--as-recorded moves nothing",
         f"{DEMO} --motion {{clip}} --as-recorded --at 0,2 --heading 0",
-        (
-            drop("--at", "--heading"),
-            drop("--as-recorded"),
-        ),
+        (drop("--at", "--heading"), drop("--as-recorded")),
     ),
     Row(
         "--motion-set is about a recorded motion; give --motion too",
@@ -168,10 +151,7 @@ ROWS = (
     Row(
         "holds something else; choose another --out",
         f"{BATCH}",
-        (
-            instead("choose another --out", "out", "other"),
-            flag("--overwrite"),
-        ),
+        (instead("choose another --out", "out", "other"), flag("--overwrite")),
         before=lambda: _holds_something("out/0000/meta.json"),
     ),
     Row("--per-class is for many sequences", f"{DEMO} --per-class 2", (add("--texts", "{texts}"),)),
@@ -186,11 +166,7 @@ ROWS = (
     Row(
         "--stream needs sentences",
         f"generate --demo --stream {SHORT}",
-        (
-            add("--text", "a person waves"),
-            add("--texts", "{texts}"),
-            add("--texts", "-"),
-        ),
+        (add("--text", "a person waves"), add("--texts", "{texts}"), add("--texts", "-")),
     ),
     Row(
         "--method-set has bounces=1 or 2 and clutter=all or resolved",

@@ -43,10 +43,7 @@ ROWS = (
     Row(
         "another direction (--heading), or keep more range bins (--range)",
         f"{DEMO} --frames 20 --range 1.5,2 --text 'a person sits down on the chair, then walks to the wall'",
-        (
-            add("--heading", "90"),
-            instead("or keep more range bins (--range)", "1.5,2", "1.5,3"),
-        ),
+        (add("--heading", "90"), instead("or keep more range bins (--range)", "1.5,2", "1.5,3")),
     ),
     Row(
         "□: no wall was found in the photo",
@@ -103,10 +100,7 @@ ROWS = (
     Row(
         "say so, or leave out --path",
         f"{ONE} --text 'a person waves' --path '0,1.6 0.4,1.6'",
-        (
-            drop("--path"),
-            instead("walks or runs; say so", "'a person waves'", "'a person walks'"),
-        ),
+        (drop("--path"), instead("walks or runs; say so", "'a person waves'", "'a person walks'")),
     ),
     Row(
         "s are too short for the path",
@@ -136,10 +130,7 @@ ROWS = (
     Row(
         "the upward axis cannot be estimated",
         f"{ONE} --motion {{leaning}} --motion-set fps=30",
-        (
-            plus("--motion-set up=", "--motion-set", "up=y"),
-            plus("or up=z", "--motion-set", "up=z"),
-        ),
+        (plus("--motion-set up=", "--motion-set", "up=y"), plus("or up=z", "--motion-set", "up=z")),
     ),
     Row(
         "so it cannot start at",
@@ -164,10 +155,7 @@ ROWS = (
     Row(
         "another --motion-set start=S, --at or --heading",
         f"{DEMO} --motion {{far}} --motion-set fps=30 --motion-set unit=m --motion-set up=y",
-        (
-            add("--frames", "2"),
-            plus("or --as-recorded", "--as-recorded"),
-        ),
+        (add("--frames", "2"), plus("or --as-recorded", "--as-recorded")),
     ),
     Row(
         "take a radar with a longer window (--radar)",

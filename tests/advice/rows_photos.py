@@ -12,7 +12,8 @@ from tests.captures import write_camera
 from tests.scene.test_scan_folders import scannet
 
 SHORT = "--text 'a person waves' --frames 1 --no-pictures --out out"
-PHOTO = f"generate --rgb {{rgb}} --depth {{depth}} --camera {{camera}} {SHORT}"
+
+
 ESTIMATED = f"generate --rgb {{rgb}} --camera {{camera}} {SHORT}"
 CAPTURE = f"generate --room capture {SHORT}"
 LENS = CameraIntrinsics(fx=60.0, fy=60.0, cx=31.5, cy=23.5, width=64, height=48)
@@ -30,10 +31,6 @@ def _capture_without_video() -> None:
     _capture()
     Path("capture/realsense/color.avi").write_bytes(b"no video")
     Image.new("RGB", (128, 96)).save("own.png")
-
-
-def _classes() -> None:
-    Image.fromarray(np.zeros((480, 640), np.uint8)).save("classes.png")
 
 
 def _scan_without_first_pose() -> None:

@@ -58,11 +58,6 @@ def _list_damaged() -> None:
     Path("out/sequences.json").write_text("{}")
 
 
-def _one_missing() -> None:
-    _texts()
-    shutil.rmtree("out/0001")
-
-
 def _packed() -> None:
     _generated()
     run("compress out/radar.npz -o walk.mmw --quality 30 --quiet")

@@ -44,13 +44,7 @@ ROWS = (
     Row(
         "is for labelled sets; give --activities, too",
         f"{ROOMS} --per-class 2",
-        (
-            instead(
-                "give --activities",
-                "--layouts 1 --sequences 1",
-                "--activities {activities} --room {own_room}",
-            ),
-        ),
+        (instead("give --activities", "--layouts 1 --sequences 1", "--activities {activities} --room {own_room}"),),
     ),
     Row(
         "is for data sets of rooms; leave it out",
@@ -62,11 +56,7 @@ ROWS = (
         "dataset out --from-results {results} --per-class 2",
         (drop("--per-class"),),
     ),
-    Row(
-        "which room? give --room DIR",
-        SET,
-        (add("--room", "{own_room}"),),
-    ),
+    Row("which room? give --room DIR", SET, (add("--room", "{own_room}"),)),
     Row(
         "give what mmweaver generate --texts wrote",
         "dataset out --from-results {nothing}",
@@ -75,10 +65,7 @@ ROWS = (
     Row(
         "is a sentence of no activity",
         "dataset out --from-results {results} --activities {jumping}",
-        (
-            drop("--activities"),
-            instead("add it to one", "{jumping}", "{activities}"),
-        ),
+        (drop("--activities"), instead("add it to one", "{jumping}", "{activities}")),
     ),
     # training: the options and what is read alone
     Row(

@@ -5,7 +5,6 @@ stands (test_sdist.py).
 """
 
 import re
-import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -14,8 +13,6 @@ from PIL import Image
 from mmweaver.cli.main import COMMANDS
 from mmweaver.io.npz_files import read_radar_npz
 from tests.artifact.artifact import Installed
-from tests.artifact.readme import recipes
-from tests.artifact.smaller import SMALLER
 
 
 def test_every_line_of_the_readme_runs(carried_out: tuple[Path, dict[str, str]]):
@@ -41,27 +38,6 @@ def test_the_demo_is_drawn(carried_out: tuple[Path, dict[str, str]]):
 def test_the_cube_of_the_python_has_the_axes_that_the_readme_names(carried_out: tuple[Path, dict[str, str]]):
     """By default 64 ranges, 32 velocities, 12 antennas."""
     assert read_radar_npz(carried_out[0] / "room" / "walk" / "radar.npz").values.shape[1:] == (64, 32, 12)
-
-
-def test_the_recogniser_of_the_readme_names_an_activity_of_its_task(carried_out: tuple[Path, dict[str, str]]):
-    place, printed = carried_out
-    (said,) = [text for line, text in printed.items() if "recognise run" in line]
-    labels = tomllib.loads((place / "room" / "TASK.toml").read_text())["activities"]
-    assert said.split()[2] in labels
-
-
-def test_what_is_smaller_stands_in_the_readme_once():
-    text = "\n".join(one.text for one in recipes())
-    for part in SMALLER:
-        assert text.count(part) == 1, part
-
-
-def test_the_readme_has_recipes_of_both_kinds():
-    """Five lines of Python are enough."""
-    found = recipes()
-    (code,) = [one.text for one in found if one.is_python]
-    assert len([line for line in code.splitlines() if line.strip()]) <= 5
-    assert sum(not one.is_python for one in found) >= 10
 
 
 def test_the_command_runs_as_pip_installs_it(installed: Installed, tmp_path: Path):

@@ -30,7 +30,7 @@ def test_a_room_and_a_list_become_a_set(tmp_path: Path, capsys: pytest.CaptureFi
     assert len(stored) == 2
 
 
-@pytest.mark.parametrize(("iq", "too_small"), [("float16", 0.6), ("float32", 0.6), ("none", 0.1)])
+@pytest.mark.parametrize(("iq", "too_small"), [("float16", 0.6), ("none", 0.1)])
 def test_a_disk_needs_room_for_the_set_and_its_parts(
     iq: str, too_small: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):

@@ -6,9 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.cli.batch import read_texts
 from mmweaver.cli.main import main
-from mmweaver.core.errors import InputError
 from mmweaver.io.npz_files import read_radar_npz
 
 SHORT = ["generate", "--demo", "--frames", "6", "--no-pictures", "--json"]
@@ -46,12 +44,6 @@ def test_a_folder_for_each_and_more_of_them_later(texts: Path, tmp_path: Path, c
     assert np.array_equal(cubes[0], cubes[1])
 
 
-def test_an_empty_room_is_generated_alone(texts: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    texts.write_text("a person stands\nnobody\n")
-    assert main([*SHORT, "--texts", str(texts), "--out", str(tmp_path / "set")]) == 2
-    assert "generate it alone" in capsys.readouterr().err
-
-
 def test_what_an_earlier_run_made_otherwise_is_not_touched(
     texts: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ):
@@ -85,7 +77,8 @@ def test_without_a_length_all_are_as_long_as_the_longest(tmp_path: Path):
 def test_a_sentence_without_a_place_is_skipped_and_listed(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     file = tmp_path / "sentences.txt"
     file.write_text("a person stands\na person walks to the door\n")  # there is none in the sample
-    words = ["generate", "--demo", "--no-pictures", "--texts", str(file), "--out", str(tmp_path / "set")]
+    words = ["generate", "--demo", "--no-pictures", "--missing", "refuse", "--texts", str(file)]
+    words += ["--out", str(tmp_path / "set")]
     assert main(words) == 0
     shown = capsys.readouterr().out
     assert shown.startswith("1 sequence in ")
@@ -117,10 +110,3 @@ def test_bad_lists_are_one_line_and_leave_nothing(
     assert says in error
     assert "\n" not in error
     assert not (tmp_path / "set").exists()
-
-
-def test_no_text_is_no_list(tmp_path: Path):
-    (tmp_path / "picture.png").write_bytes(b"\x89PNG\xff\xfe")
-    for name, says in (("picture.png", "no UTF-8 text"), ("nothing.txt", "cannot read")):
-        with pytest.raises(InputError, match=says):
-            read_texts(tmp_path / name)

@@ -78,18 +78,3 @@ def test_hostile_input_is_one_line(content: bytes | None, why: str, recording: P
     assert error.count("\n") == 1
     assert why in error
     assert not out.exists()
-
-
-def test_what_cannot_be_written_is_said_first(recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    (tmp_path / "board.json").write_text("mine", encoding="utf-8")
-    assert main(words(recording, tmp_path / "board.json")) == 2
-    assert "--overwrite" in capsys.readouterr().err
-    assert (tmp_path / "board.json").read_text(encoding="utf-8") == "mine"
-
-
-def test_a_board_of_another_radar_is_refused(recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    out = tmp_path / "board.json"
-    assert main(words(recording, out)) == 0
-    assert main(["generate", "--demo", "--radar", "bgt60", "--board", str(out), "--out", str(tmp_path / "made")]) == 2
-    assert "3 x 4 antenna pairs" in capsys.readouterr().err
-    assert not (tmp_path / "made").exists()

@@ -1,4 +1,3 @@
-import errno
 import json
 import re
 from pathlib import Path
@@ -37,19 +36,6 @@ def test_a_cube_and_a_size(recording: Path, capsys: pytest.CaptureFixture[str]):
     assert main(["compress", str(recording), "-o", str(out), "--bytes", "9000", "--overwrite"]) == 0
 
 
-def test_a_file_that_may_not_grow_is_named(
-    recording: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-):
-    def refused(*_: object) -> int:
-        raise OSError(errno.EFBIG, "File too large")
-
-    monkeypatch.chdir(recording.parent)
-    monkeypatch.setattr(Path, "write_bytes", refused)
-    assert main(["compress", str(recording), "--bytes", "3000", "-o", "a.mmw"]) == 2
-    assert re.search(r"cannot write \S+\.mmw: File too large", capsys.readouterr().err)
-    assert not Path("a.mmw").exists()
-
-
 def test_raw_samples_need_their_radar(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     rng = np.random.default_rng(0)
     shape = (2, 16, 3, 4, 128)
@@ -64,26 +50,6 @@ def test_raw_samples_need_their_radar(tmp_path: Path, capsys: pytest.CaptureFixt
     assert main([*words, "--radar", str(tmp_path / "radar.json"), "--quiet"]) == 0
     assert capsys.readouterr().out == ""
     assert (tmp_path / "a.mmw").stat().st_size <= 4000
-
-
-def test_an_array_of_another_project(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    """HuPR's shape is known; mmMesh's is also RF-Genesis's, so it must be named."""
-    from tests.io.test_peer_arrays import hupr_array, simulated_frame
-
-    np.save(tmp_path / "000000001.npy", hupr_array(simulated_frame()))
-    words = ["compress", str(tmp_path / "000000001.npy"), "-o", str(tmp_path / "a.mmw"), "--bytes", "9000", "--json"]
-    assert main(words) == 0
-    assert json.loads(capsys.readouterr().out)["cube_bytes"] == 64 * 64 * 12 * 8
-    np.save(tmp_path / "frame.npy", np.zeros((3, 4, 128, 256), np.complex64))
-    words = ["compress", str(tmp_path / "frame.npy"), "-o", str(tmp_path / "b.mmw"), "--bytes", "9000"]
-    assert main(words) == 2
-    assert "mmmesh or rf_genesis" in capsys.readouterr().err
-    assert main([*words, "--layout", "nobody"]) == 2
-    assert main([*words, "--layout", "hupr"]) == 2
-    message = capsys.readouterr().err.splitlines()
-    assert len(message) == 2
-    assert "HuPR's are complex" in message[1]
-    assert not (tmp_path / "b.mmw").exists()
 
 
 @pytest.mark.parametrize(

@@ -1,18 +1,12 @@
 """mmweaver dataset on the command line."""
 
 import json
-import os
-import signal
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import pytest
 
 from mmweaver.cli.main import main
 from tests.datasets.test_generate_rooms import contents
-from tests.platforms import posix_only
 
 pytest.importorskip("zarr")
 REFERENCE = "office,living_room,lab,kitchen,library,bedroom,dining_room,meeting_room,classroom,workshop"
@@ -49,13 +43,7 @@ def test_the_cost_is_printed_beforehand(tmp_path: Path, capsys: pytest.CaptureFi
     words = [
         "dataset",
         str(tmp_path / "d"),
-        "--layouts",
-        "10",
-        "--sequences",
-        "120",
-        "--workers",
-        "4",
-        "--rooms",
+        *["--layouts", "10", "--sequences", "120", "--workers", "4", "--rooms"],
         REFERENCE,
     ]
     assert main([*words, "--dry-run"]) == 0
@@ -68,25 +56,3 @@ def test_the_cost_is_printed_beforehand(tmp_path: Path, capsys: pytest.CaptureFi
     assert set(cost["splits"]) == {"train", "validation", "test_room", "test_layout", "test_person", "test_activity"}
     assert cost["disk_bytes"] < 1e9
     assert not (tmp_path / "d").exists()
-
-
-@pytest.mark.slow  # test_generate_rooms.py goes on from what a kill leaves
-@posix_only
-def test_killed_with_two_workers_nothing_is_lost_or_doubled(tmp_path: Path):
-    """A kill of all processes while two rooms are under way; then the same command again."""
-    words = ["dataset", "--rooms", "office,gym", "--layouts", "2", "--sequences", "2", "--frames", "4", "--quiet"]
-    killed, whole = tmp_path / "killed", tmp_path / "whole"
-    command = [sys.executable, "-m", "mmweaver", *words, "--workers", "2", str(killed)]
-    environment = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2] / "src"), "OMP_NUM_THREADS": "1"}
-    process = subprocess.Popen(command, env=environment, start_new_session=True)
-    deadline = time.monotonic() + 240
-    while process.poll() is None and not list(killed.glob("*_00?")) and time.monotonic() < deadline:
-        time.sleep(0.005)
-    os.killpg(process.pid, signal.SIGKILL)
-    assert process.wait() == -signal.SIGKILL
-    there = {room.name: room.stat().st_mtime_ns for room in killed.glob("*_00?")}
-    assert 1 <= len(there) < 4
-    assert main([*words, "--workers", "2", str(killed)]) == 0
-    assert main([*words, str(whole)]) == 0
-    assert {name: (killed / name).stat().st_mtime_ns for name in there} == there  # nothing is made twice
-    assert contents(killed) == contents(whole)

@@ -33,15 +33,9 @@ def recorded(tmp_path: Path) -> Path:
 def test_a_recorded_motion_in_the_sample_room(recorded: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     out = tmp_path / "out"
     argv = [
-        "generate",
-        "--demo",
-        "--motion",
+        *["generate", "--demo", "--motion"],
         str(recorded),
-        "--motion-set",
-        "fps=30",
-        "--frames",
-        "5",
-        "--out",
+        *["--motion-set", "fps=30", "--frames", "5", "--out"],
         str(out),
     ]
     argv += ["--at", "0.1,1.7", "--heading", "-20", "--height", "1.85", "--no-pictures"]
@@ -101,23 +95,3 @@ def test_bad_input_is_one_line_and_leaves_nothing(
     assert error.count("\n") == 1
     assert message in error
     assert not (tmp_path / "out").exists()
-
-
-def test_a_motion_model_acts_out_the_text(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    pytest.importorskip("transformers")
-    assert (
-        main(
-            [
-                "generate",
-                "--demo",
-                "--motion-model",
-                str(tmp_path / "none.tar"),
-                "--motion-set",
-                "for=all",
-                "--out",
-                str(tmp_path / "o"),
-            ]
-        )
-        == 2
-    )
-    assert "there is no checkpoint" in capsys.readouterr().err

@@ -7,7 +7,6 @@ import pytest
 from PIL import Image
 
 from mmweaver.cli.main import main
-from tests.datasets.conftest import ACTIVITIES
 
 
 @pytest.fixture(scope="module")
@@ -45,17 +44,6 @@ def test_without_the_mean_chirp_the_middle_of_the_doppler_axis_is_dark(walk: Pat
     assert share_bright("--remove-static", "mean_chirp") < 0.8 * share_bright()
 
 
-def test_a_sequence_of_a_labelled_set(tmp_path: Path):
-    (tmp_path / "a.toml").write_text(ACTIVITIES)
-    sample = Path(__file__).resolve().parents[2] / "src" / "mmweaver" / "sample"
-    words = ["dataset", str(tmp_path / "set"), "--room", str(sample), "--activities", str(tmp_path / "a.toml")]
-    assert main([*words, "--per-class", "1", "--seconds", "1", "--quiet"]) == 0
-    out = tmp_path / "features.png"
-    assert main(["plot", str(tmp_path / "set"), "--sequence", "1", "-o", str(out)]) == 0
-    assert out.is_file()
-    assert main(["plot", str(tmp_path / "set"), "--sequence", "99", "-o", str(tmp_path / "no.png")]) == 2
-
-
 @pytest.mark.parametrize(
     "options",
     [["--feature", "sd"], ["--frames", "99"], ["--frames", "a"], ["--frames", "-1"], ["--sequence", "0"],
@@ -69,9 +57,3 @@ def test_mistakes_are_one_line_and_nothing_is_written(
     assert main(["plot", str(walk), *options]) == 2
     assert capsys.readouterr().err.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
-
-
-def test_what_is_no_signal_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    assert main(["plot", str(tmp_path), "-o", str(tmp_path / "a.png")]) == 2
-    assert main(["plot", str(tmp_path / "missing.mmw"), "-o", str(tmp_path / "a.png")]) == 2
-    assert capsys.readouterr().err.count("\n") == 2

@@ -12,7 +12,7 @@ from mmweaver.core.boards import AWR1843, typical_board
 from mmweaver.core.records import AdcCube
 from mmweaver.core.seeding import stream
 from mmweaver.io.dca1000 import write_bin
-from mmweaver.io.npz_files import read_npz, read_points_npz, read_radar_npz
+from mmweaver.io.npz_files import read_points_npz, read_radar_npz
 from tests.captures import counts, radar_of_cfg, write_radar
 
 BARE_CFG = """channelCfg 15 7 0
@@ -86,29 +86,29 @@ def test_both_iq_orders_and_npy_give_the_same_cube(recording: Path, tmp_path: Pa
     assert np.allclose(cubes[0], cubes[2], atol=1e-3)
 
 
-def test_points_as_a_board_reports_them(recording: Path, tmp_path: Path):
-    out = tmp_path / "capture"
-    argv = ["process", str(recording / "adc_data.bin"), "--radar", "awr1843", "--points", "firmware"]
-    assert main([*argv, "--out", str(out), "--quiet"]) == 0
-    points = read_npz(out / "points.npz")
-    best = points["intensity"].argmax()
-    assert (points["x_m"][best], points["y_m"][best]) == pytest.approx((0, 2), abs=0.05)
-    assert (points["radial_velocity_mps"] == 0).any()
-    assert json.loads((out / "meta.json").read_text())["firmware"]["device"] == "xwr14xx"
-
-
-def test_the_summary_for_machines(recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    argv = ["process", str(recording / "adc_data.bin"), "--radar", "awr1843", "--out", str(tmp_path / "x"), "--json"]
-    assert main(argv) == 0
-    summary = json.loads(capsys.readouterr().out)
-    assert all(Path(path).is_file() for path in summary["files"].values())
-
-
 def test_a_capture_folder_needs_no_option(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     write_radar(tmp_path / "capture_00000" / "iwr1843", counts(radar_of_cfg(tmp_path)))
     assert main(["process", str(tmp_path / "capture_00000"), "--out", str(tmp_path / "out"), "--json"]) == 0
     assert "radar.npz" in " ".join(json.loads(capsys.readouterr().out)["files"])
     assert read_radar_npz(tmp_path / "out" / "radar.npz").values.shape[0] == 3
+
+
+@pytest.fixture(scope="module")
+def bad(recording: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Recordings and radars that are none; nothing is written there."""
+    place = tmp_path_factory.mktemp("bad")
+    whole = (recording / "adc_data.bin").read_bytes()
+    (place / "whole.bin").write_bytes(whole)
+    (place / "cut.bin").write_bytes(whole[:-100])
+    (place / "empty.bin").write_bytes(b"")
+    (place / "broken.json").write_text("{")
+    (place / "bare.cfg").write_text(BARE_CFG)
+    (place / "lines.cfg").write_text("sensorStop\nflushCfg\n")
+    (place / "whole.npy").write_bytes((recording / "adc.npy").read_bytes())
+    np.save(place / "objects.npy", np.array([{}], dtype=object))
+    write_radar(place / "capture_00000" / "iwr1843", counts(radar_of_cfg(place), num_frames=1))
+    (place / "capture_00001").mkdir()
+    return place
 
 
 @pytest.mark.parametrize(
@@ -139,29 +139,18 @@ def test_a_capture_folder_needs_no_option(tmp_path: Path, capsys: pytest.Capture
     ids=lambda value: value if isinstance(value, str) else None,
 )
 def test_bad_input_is_one_line_and_writes_nothing(
-    words: list[str], says: str, recording: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    words: list[str], says: str, bad: Path, monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ):  # fmt: skip
-    whole = (recording / "adc_data.bin").read_bytes()
-    (tmp_path / "whole.bin").write_bytes(whole)
-    (tmp_path / "cut.bin").write_bytes(whole[:-100])
-    (tmp_path / "empty.bin").write_bytes(b"")
-    (tmp_path / "broken.json").write_text("{")
-    (tmp_path / "bare.cfg").write_text(BARE_CFG)
-    (tmp_path / "lines.cfg").write_text("sensorStop\nflushCfg\n")
-    (tmp_path / "whole.npy").write_bytes((recording / "adc.npy").read_bytes())
-    np.save(tmp_path / "objects.npy", np.array([{}], dtype=object))
-    write_radar(tmp_path / "capture_00000" / "iwr1843", counts(radar_of_cfg(tmp_path), num_frames=1))
-    (tmp_path / "capture_00001").mkdir()
-    before = sorted(file.name for file in tmp_path.iterdir())
-    monkeypatch.chdir(tmp_path)
+    before = sorted(file.name for file in bad.iterdir())
+    monkeypatch.chdir(bad)
     assert main(["process", *words, "--out", "capture"]) == 2
     captured = capsys.readouterr()
     assert captured.err.startswith("mmweaver: error: ")
     assert captured.err.count("\n") == 1
     assert says in captured.err
     assert captured.out == ""
-    assert sorted(file.name for file in tmp_path.iterdir()) == before
+    assert sorted(file.name for file in bad.iterdir()) == before
 
 
 def test_a_board_is_taken_away(recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):

@@ -32,12 +32,3 @@ def test_long_work_on_a_terminal_shows_its_stage(monkeypatch: pytest.MonkeyPatch
     text = shown(monkeypatch, Terminal(), patience_s=0.01)
     assert "second" in text
     assert "1/2" in text
-
-
-def test_short_work_shows_nothing(monkeypatch: pytest.MonkeyPatch):
-    assert shown(monkeypatch, Terminal(), patience_s=progress.PATIENCE_S) == ""
-
-
-def test_quiet_work_and_pipes_show_nothing(monkeypatch: pytest.MonkeyPatch):
-    assert shown(monkeypatch, Terminal(), patience_s=0.01, quiet=True) == ""
-    assert shown(monkeypatch, io.StringIO(), patience_s=0.01) == ""

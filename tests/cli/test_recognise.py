@@ -5,7 +5,6 @@ import json
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 pytest.importorskip("sklearn")
@@ -14,7 +13,6 @@ from mmweaver.cli.main import main
 from mmweaver.cli.recognise_text import confused_lines
 from mmweaver.recognition import train_recogniser as training
 from mmweaver.recognition.recogniser import load_recogniser
-from tests.io.point_clouds.test_read_points import out_of_box
 from tests.recognition.small_recogniser import drawn_sequences, write_recordings
 from tests.recognition.test_train_recogniser import TASK
 
@@ -59,45 +57,6 @@ def test_the_largest_confusions_of_generated_people_are_named():
     (line,) = confused_lines(labels, confusion)
     assert line.endswith("run for walk (60%), walk for run (10%), lie for walk (10%)")
     assert confused_lines(labels, [[20, 0, 1], [0, 9, 0], [0, 0, 9]]) == []
-
-
-@pytest.mark.slow  # two trainings
-def test_logs_of_a_data_port_are_scored_trained_on_and_labelled(
-    model: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-):
-    """Folders named by label hold .dat as the board sends them, with frames without points among them."""
-    logs = model.parent / "logs"
-    for one in drawn_sequences(load_recogniser(model).settings, 2, first=30):
-        cloud = one.cloud
-        points = np.stack([cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps], axis=1)
-        frames = [points[(cloud.frame == frame) & (frame % 5 > 0)] for frame in range(one.num_frames)]
-        (logs / one.label).mkdir(parents=True, exist_ok=True)
-        log = b"".join(out_of_box(number, rows) for number, rows in enumerate(frames))
-        (logs / one.label / f"{one.name}.dat").write_bytes(log)
-    assert main(["recognise", "score", str(model), "--recordings", str(logs), "--json"]) == 0
-    scores = json.loads(capsys.readouterr().out)
-    assert scores["window"]["n"] == 16
-    assert scores["window"]["balanced_accuracy"] > 0.9
-    log = next((logs / "rest").glob("*.dat"))
-    words = ["recognise", "run", str(model), "--json", "--points"]
-    assert main([*words, str(log)]) == 0
-    from_file = capsys.readouterr().out
-    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(log.read_bytes())))
-    assert main([*words, "-"]) == 0
-    assert capsys.readouterr().out == from_file
-    assert [json.loads(line)["label"] for line in from_file.splitlines()] == ["rest"] * 4
-    words = [
-        "recognise",
-        "train",
-        str(model.parent / "task.toml"),
-        "--recordings",
-        str(logs),
-        "--sequences",
-        "4",
-        "--json",
-    ]
-    assert main([*words, "--out", str(model.parent / "taught")]) == 0
-    assert json.loads(capsys.readouterr().out)["labelled_windows"] == 16
 
 
 @pytest.mark.parametrize(

@@ -49,12 +49,6 @@ def test_the_lists_of_activities_are_read(sample: Path):
     assert len(tuple(read_activities(sample / "activities.toml"))) >= 3
 
 
-def test_the_page_names_every_file(sample: Path):
-    page = (sample / "README.txt").read_text(encoding="utf-8")
-    for file in sample.iterdir():
-        assert file.name in page or file.name in ("README.txt", SUMS_FILE)
-
-
 def test_the_same_files_every_time(sample: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     assert main(["sample", str(tmp_path), "--json"]) == 0
     written = json.loads(capsys.readouterr().out)

@@ -8,17 +8,6 @@ from mmweaver.cli.main import main
 from mmweaver.recordings.read_recording import read_recording
 
 
-@pytest.mark.slow  # test_streaming.py and test_stream_folder.py hold the two halves of it
-def test_a_stream_is_written_and_read(tmp_path: Path):
-    out = tmp_path / "live"
-    said = ["--text", "a person waves", "--text", "claps"]
-    assert main(["generate", "--demo", "--stream", *said, "--frames", "40", "--out", str(out), "--quiet"]) == 0
-    assert len(read_recording(out).cube.values) == 40
-    texts = (out / "parts.jsonl").read_text()
-    assert "a person waves" in texts
-    assert "claps" in texts
-
-
 @pytest.mark.parametrize("frames", [7, 23])
 def test_a_stream_has_as_many_frames_as_asked_for(frames: int, tmp_path: Path):
     """Which end within a part, or are fewer than one has."""
@@ -26,16 +15,6 @@ def test_a_stream_has_as_many_frames_as_asked_for(frames: int, tmp_path: Path):
     said = ["--text", "a person waves", "--text", "claps"]
     assert main(["generate", "--demo", "--stream", *said, "--frames", str(frames), "--out", str(out), "--quiet"]) == 0
     assert len(read_recording(out).cube.values) == frames
-
-
-@pytest.mark.parametrize(
-    ("given", "named"), [([], "--text"), (["--text", "a person waves", "--seconds", "3"], "--seconds")]
-)
-def test_what_streams_do_not_have_is_refused(given: list[str], named: str, tmp_path: Path, capsys):
-    out = tmp_path / "live"
-    assert main(["generate", "--demo", "--stream", *given, "--out", str(out)]) == 2
-    assert named in capsys.readouterr().err
-    assert not out.exists()
 
 
 def test_a_stream_into_a_folder_that_holds_one_says_what_to_do(tmp_path: Path, capsys):

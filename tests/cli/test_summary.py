@@ -40,12 +40,6 @@ def test_people_hear_where_what_and_on_which_assumptions():
         assert word in text
 
 
-def test_a_recorded_motion_has_no_line_of_what_is_shown():
-    assert not any(
-        line.startswith("motion:") for line in summary_lines("walk", META | {"person": META["person"] | {"shown": ""}})
-    )
-
-
 def test_machines_read_json_people_read_lines_and_quiet_is_quiet(capsys: pytest.CaptureFixture[str]):
     printed = []
     for how in ({"json": True}, {}, {"quiet": True}):

@@ -34,11 +34,11 @@ def test_the_field_of_a_file_is_the_cube_of_the_file(written: tuple[Path, RadarC
 def test_finer_grids_contain_the_cells_and_stay_near_between_them(written: tuple[Path, RadarCube]):
     path, cube = written
     field = open_mmw(path)
-    finer = field.finer(n_r=2.0, n_d=2.0)
+    finer = field.on_grid(n_r=2.0, n_d=2.0)
     assert error_db(finer.values[:, ::2, ::2], cube.values) < -60
     grid = finer_grid(cube.grid, n_r=2.0)
     places = np.stack(np.meshgrid([1], np.arange(0, 47) / 2, [5], [3], indexing="ij"), -1).reshape(-1, 4)
-    assert error_db(field.sample(places), field.on_grid(replace(grid))[1, :47, 5, 3]) < -60
+    assert error_db(field.sample(places), field.values_on(replace(grid))[1, :47, 5, 3]) < -60
 
 
 @pytest.mark.parametrize("num_loops", [1, 2, 3])

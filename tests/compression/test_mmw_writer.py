@@ -1,5 +1,3 @@
-import errno
-import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -62,25 +60,6 @@ def test_what_does_not_fit_is_refused(tmp_path: Path):
     (tmp_path / "b.mmw").write_bytes((Path(__file__).parents[1] / "golden" / "version_1.mmw").read_bytes())
     with pytest.raises(InputError, match="version 1"):
         MmwWriter(tmp_path / "b.mmw", append=True)
-
-
-@pytest.mark.usefixtures("stored_exactly")
-def test_a_disk_that_takes_no_more_is_an_error_and_what_was_whole_is_read(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
-    path = tmp_path / "a.mmw"
-    with MmwWriter(path) as writer:
-        writer.append(piece(0, 4), num_bytes=700)
-        whole = read_cube(path)
-
-        def full(_: int) -> None:
-            raise OSError(errno.ENOSPC, "No space left on device")
-
-        monkeypatch.setattr(os, "fsync", full)
-        with pytest.raises(InputError, match=r"a\.mmw: No space"):
-            writer.append(piece(4, 4), num_bytes=700)
-    path.write_bytes(path.read_bytes()[:-30])  # the last bytes never came
-    assert np.array_equal(read_cube(path).values, whole.values)
 
 
 @pytest.mark.parametrize("version", [3, 4])

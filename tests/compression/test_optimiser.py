@@ -11,7 +11,6 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.core.seeding import stream
 from tests.compression.echoes import SMALL, crowd
-from tests.compression.test_mmw_codec import plain_cube
 
 
 def optimiser_of(cube: RadarCube) -> Optimiser:
@@ -49,18 +48,10 @@ def test_what_cannot_be_reached_is_refused():
         optimiser.within_error(300.0, lambda _: None)
 
 
-def test_a_cube_of_one_number_is_kept_without_loss():
-    """Its transforms would take a thousand bytes for matrices alone."""
-    cube = plain_cube(SMALL, 5, "constant")
-    chunks = optimiser_of(cube).within_error(20.0, lambda _: None)
-    assert sum(map(len, chunks)) < 500
-    assert np.array_equal(decoded(chunks, cube), cube.values)
-
-
 @pytest.mark.parametrize(
     ("cube", "num_bytes"),
-    [(crowd(), 900), (crowd(num_frames=1), 2500), (crowd(num_points=2, noise=2e-2), 2500), (crowd(noise=0.1), 900)],
-    ids=["many points", "one frame", "few points", "noise"],
+    [(crowd(num_frames=1), 2500), (crowd(num_points=2, noise=2e-2), 2500)],
+    ids=["one frame", "few points"],
 )
 def test_full_effort_is_not_behind_fast(cube: RadarCube, num_bytes: int):
     is_active = active_mask(cube.values)

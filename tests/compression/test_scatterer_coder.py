@@ -12,13 +12,11 @@ from mmweaver.compression.scatterer_coder import (
     PointSteps,
     code_static,
     dequantize,
-    nearness,
     quantize,
     static_levels,
     static_of,
 )
 from mmweaver.compression.scatterers.fit_window import FitWindow
-from mmweaver.compression.scatterers.layers import no_points
 from mmweaver.core.seeding import stream
 from tests.compression.echoes import SMALL
 from tests.compression.scatterers.test_refinement import AXES, RESPONSE, random_points
@@ -57,36 +55,6 @@ def test_every_parameter_follows_the_step():
         energy = float((RESPONSE.render(again, AXES) - truth).abs().square().sum())
         errors.append(np.sqrt(energy / 30) / step)  # a scatterer, in steps
     assert all(0.2 < error < 2.0 for error in errors)
-
-
-def test_weak_scatterers_are_dropped():
-    coded, steps = coded_at(0.05)
-    fewer = quantize(random_points(25, num_frames=3), steps, AXES, 2, int(np.median(coded.size)))
-    assert 0 < len(fewer) < len(coded)
-    none = quantize(no_points(3), steps, AXES, 2, 1)
-    assert len(none) == 0
-    assert dequantize(none, 3, steps, AXES, 2).amplitude.shape == (3, 0)
-
-
-def test_nearness_shows_where_scatterers_are():
-    coded, _ = coded_at(0.05, num_points=3)
-    near = nearness(coded, SHAPE)
-    assert (near[coded.frame, coded.range_cell, coded.doppler_cell] > 0).all()
-    assert (near > 0).sum() <= 9 * len(coded)
-    assert near.max() <= 5
-
-
-def test_an_array_without_directions_codes_none():
-    steps = PointSteps.of(0.01, RESPONSE, AXES)
-    sizes = []
-    for num_directions in (0, 1, 2):
-        writer = Encoder()
-        coded = quantize(random_points(25, num_frames=3), steps, AXES, num_directions, 1)
-        PointCoder(SHAPE, steps, num_directions).code(writer, coded)
-        sizes.append(len(writer.to_bytes()))
-    assert sizes[0] < sizes[1] < sizes[2]
-    assert SMALL.num_antennas == 12
-    assert torch.all(dequantize(coded, 3, steps, AXES, 0).direction == 0)
 
 
 def test_a_static_layer_is_known_to_less_than_a_step():

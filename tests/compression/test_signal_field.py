@@ -37,12 +37,6 @@ def test_one_and_a_half_times_finer_contains_every_other_cell():
     assert finer.radial_velocity_mps[48 // 2] == pytest.approx(0, abs=1e-12)
 
 
-@pytest.mark.parametrize("bad", [0.5, float("nan")])
-def test_a_coarser_grid_is_refused(bad: float):
-    with pytest.raises(InputError, match=f"n_d .* at least 1, not {bad}"):
-        finer_grid(NATIVE, n_d=bad)
-
-
 def test_coordinates_are_in_cells():
     frame, range_bin, doppler_bin, antenna = coordinates_on(NATIVE, finer_grid(NATIVE, n_r=2.0, n_d=4.0, n_a=2.0))
     assert np.allclose(frame, [0, 1, 2])
@@ -57,12 +51,6 @@ def test_antenna_places_and_numbers_are_inverse():
     assert np.allclose(antenna_coordinate(NATIVE.antenna_position_m, place, NATIVE.wavelength_m), number, atol=1e-6)
 
 
-def test_an_antenna_off_the_line_is_refused():
-    place = NATIVE.antenna_position_m + np.array([0.0, 0.001, 0.0])
-    with pytest.raises(InputError, match="off the line"):
-        antenna_coordinate(NATIVE.antenna_position_m, place, NATIVE.wavelength_m)
-
-
 def test_one_antenna_is_enough():
     single = NATIVE.antenna_position_m[:1]
     assert antenna_at(single, np.zeros(2)).shape == (2, 3)
@@ -71,7 +59,7 @@ def test_one_antenna_is_enough():
 
 def test_sampled_coordinates_stay_within_the_radius():
     for radius in (0, 1, 7):
-        _, range_bin, doppler_bin, antenna = coordinates_on(NATIVE, sampled_grid(NATIVE, radius, seed=0))
+        _, range_bin, doppler_bin, antenna = coordinates_on(NATIVE, sampled_grid(NATIVE, radius / 8, seed=0))
         for at in (range_bin, doppler_bin, antenna):
             offset = at - np.arange(len(at))
             assert offset.min() > -1e-6
@@ -81,13 +69,13 @@ def test_sampled_coordinates_stay_within_the_radius():
             assert (range_bin - np.arange(64)).max() > 0.7
 
 
-def test_the_radius_is_one_of_the_papers():
-    with pytest.raises(InputError, match="0 to 7"):
-        sampled_grid(NATIVE, 8, seed=0)
+def test_a_radius_of_a_whole_cell_is_refused():
+    with pytest.raises(InputError, match="below 1"):
+        sampled_grid(NATIVE, 1.0, seed=0)
 
 
 def test_samples_follow_the_seed():
-    one, again, other = (sampled_grid(NATIVE, 3, seed=seed).range_m for seed in (0, 0, 1))
+    one, again, other = (sampled_grid(NATIVE, 3 / 8, seed=seed).range_m for seed in (0, 0, 1))
     assert (one == again).all()
     assert (one != other).any()
 
@@ -107,7 +95,7 @@ class Formula(SignalField):
 
 def test_a_grid_equals_its_points(monkeypatch):
     monkeypatch.setattr(signal_field, "CHUNK_POINTS", 1000)  # several chunks, one of them short
-    values = Formula().on_grid(CubeGrid.of(SMALL, 3))
+    values = Formula().values_on(CubeGrid.of(SMALL, 3))
     frame, range_bin, doppler_bin, antenna = np.indices(values.shape)
     assert np.allclose(values, frame + 10 * range_bin + 1j * (doppler_bin - 100 * antenna), atol=1e-2)
     assert values.dtype == np.complex64
@@ -115,7 +103,7 @@ def test_a_grid_equals_its_points(monkeypatch):
 
 def test_a_cube_carries_grid_config_and_scale():
     field = Formula()
-    finer = field.finer(n_r=2.0)
+    finer = field.on_grid(n_r=2.0)
     assert finer.values.shape == finer.grid.shape == (3, 64, 16, 12)
     assert finer.config is SMALL
     assert np.allclose(finer.values[:, ::2], field.cube().values, atol=1e-2)

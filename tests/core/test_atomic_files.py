@@ -11,9 +11,10 @@ from pathlib import Path
 
 import pytest
 
-from mmweaver.core.atomic_files import atomic_file, atomic_files, create_once, staged_folder, written
+from mmweaver.core.atomic_files import atomic_file, atomic_files, staged_folder
 from mmweaver.core.checksums import SUMS_FILE, damages, read_sums
 from mmweaver.core.errors import InputError
+from mmweaver.core.output_checks import check_output_file
 from mmweaver.core.staging import COMMITTED, staging_path
 
 
@@ -152,14 +153,6 @@ def test_files_that_belong_together_are_all_there_or_none(tmp_path: Path):
     assert names(tmp_path) == ["b.txt"]
 
 
-def test_only_a_full_disk_is_told_to_free_space(tmp_path: Path):
-    for number, advice in ((28, "free some space"), (122, "free some space"), (30, "another disk"), (36, "shorter")):
-        with pytest.raises(InputError, match=advice) as caught, staged_folder(tmp_path / "out"):
-            raise OSError(number, os.strerror(number))
-        assert ("free some space" in str(caught.value)) == (number in (28, 122))
-    assert names(tmp_path) == []
-
-
 def test_what_dead_processes_left_is_removed_and_what_living_ones_write_is_not(tmp_path: Path):
     code = "import sys; from pathlib import Path; from mmweaver.core.staging import staging_path;"
     code += "staging_path(Path(sys.argv[1])).mkdir(); staging_path(Path(sys.argv[1])).write_text('')"
@@ -201,10 +194,11 @@ def test_what_another_host_writes_stays_for_an_hour_after_its_last_change(
     assert other.exists() == is_kept
 
 
-def test_a_link_is_followed(tmp_path: Path):
+def test_a_link_that_was_named_is_followed(tmp_path: Path):
     (tmp_path / "real").mkdir()
     (tmp_path / "out").symlink_to("real")
     (tmp_path / "file.txt").symlink_to("real/file.txt")
+    check_output_file(tmp_path / "file.txt", overwrite=False)
     with staged_folder(tmp_path / "out") as stage:
         (stage / "a.txt").write_text("a")
     with atomic_file(tmp_path / "file.txt") as temporary:
@@ -214,6 +208,16 @@ def test_a_link_is_followed(tmp_path: Path):
     assert (tmp_path / "file.txt").is_symlink()
 
 
+def test_a_link_that_is_found_is_replaced(tmp_path: Path):
+    (tmp_path / "theirs.txt").write_text("theirs")
+    (tmp_path / "file.txt").symlink_to("theirs.txt")
+    with atomic_file(tmp_path / "file.txt") as temporary:
+        temporary.write_text("mine")
+    assert (tmp_path / "theirs.txt").read_text() == "theirs"
+    assert (tmp_path / "file.txt").read_text() == "mine"
+    assert not (tmp_path / "file.txt").is_symlink()
+
+
 def test_a_file_that_another_command_replaces_leaves_the_checksums(tmp_path: Path):
     with staged_folder(tmp_path / "out") as stage:
         (stage / "a.txt").write_text("a")
@@ -221,13 +225,6 @@ def test_a_file_that_another_command_replaces_leaves_the_checksums(tmp_path: Pat
     with atomic_file(tmp_path / "out" / "a.txt") as temporary:
         temporary.write_text("another")
     assert set(read_sums(tmp_path / "out") or {}) == {"b.txt"}
-
-
-def test_the_first_of_several_creates(tmp_path: Path):
-    assert create_once(tmp_path / "plan.json", "one") == "one"
-    assert create_once(tmp_path / "plan.json", "two") == "one"
-    assert names(tmp_path) == ["plan.json"]
-    assert written()[-1] == tmp_path / "plan.json"
 
 
 def test_the_longest_name_that_fits_can_be_written(tmp_path: Path):

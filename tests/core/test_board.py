@@ -1,6 +1,5 @@
 """The board's record and file, and boards by name."""
 
-import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,8 +9,6 @@ import pytest
 from mmweaver.core.board import Board, read_board
 from mmweaver.core.boards import AWR1843, BGT60, IDEAL_BOARD, compensated, find_board, typical_board
 from mmweaver.core.errors import InputError
-
-REPOSITORY = Path(__file__).parents[2]
 
 
 def test_a_board_comes_back_from_its_file(tmp_path: Path):
@@ -95,9 +92,3 @@ def test_what_is_no_board_is_refused_in_one_line(text: str, why: str, tmp_path: 
     with pytest.raises(InputError, match=why) as caught:
         read_board(file)
     assert "\n" not in str(caught.value)
-
-
-def test_every_field_is_in_the_page_with_its_table():
-    page = (REPOSITORY / "docs" / "board.md").read_text(encoding="utf-8")
-    for name in json.loads(json.dumps(list(Board.__dataclass_fields__))):
-        assert f"| `{name}`" in page, f"docs/board.md has no row for {name}"

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 
-import numpy as np
 import pytest
 import torch
 from torch import Tensor
@@ -50,14 +49,3 @@ def test_stack_and_cat():
 
 def test_to_changes_the_type_of_all():
     assert record(2, 1.0).to(torch.float64).inner.phase.dtype == torch.float64
-
-
-def test_arrays_are_indexed_and_joined_as_tensors_are():
-    @dataclass(frozen=True, kw_only=True)
-    class Patches(TensorRecord):
-        place_m: np.ndarray  # (patch, 3)
-        level: Tensor  # (patch,)
-
-    both = Patches.cat([Patches(place_m=np.full((2, 3), 1.0), level=torch.ones(2))] * 2)[np.array([3, 0, 1])]
-    assert both.place_m.shape == (3, 3)
-    assert both.level.tolist() == [1.0, 1.0, 1.0]

@@ -35,11 +35,6 @@ def test_a_damaged_signal_is_refused_when_read(activity_set: Path, tmp_path: Pat
         stored.cube(17)  # in the second shard
 
 
-def test_another_folder_is_no_set(tmp_path: Path):
-    with pytest.raises(InputError, match=r"set\.json"):
-        read_activity_set(tmp_path)
-
-
 def _damage(file: Path, how: str) -> None:
     if how == "deleted":
         file.unlink()

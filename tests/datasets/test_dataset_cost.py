@@ -37,14 +37,6 @@ def test_time_and_disk_grow_with_frames_and_shrink_without_signals(tmp_path: Pat
     assert "with 4 workers" in own.summary(4)
 
 
-def test_a_full_disk_is_refused_beforehand(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    cost = estimate_cost(PLAN, AWR1843, tmp_path)
-    check_for_space(cost, tmp_path / "not" / "there" / "yet")
-    monkeypatch.setattr("shutil.disk_usage", lambda path: SimpleNamespace(free=1e6))
-    with pytest.raises(InputError, match="--geometry-only"):
-        check_for_space(cost, tmp_path)
-
-
 @pytest.mark.parametrize("geometry_only", [False, True])
 def test_a_disk_that_holds_what_is_written_is_enough_and_a_smaller_one_is_refused(
     geometry_only: bool, tmp_path: Path, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch

@@ -100,18 +100,6 @@ def test_mcap(result: StoredResult, result_folder: Path, tmp_path: Path):
     assert max(time for _, _, time in seen) == round(1e9 * result.cube.grid.frame_time_s[-1])
 
 
-def test_a_file_may_be_named_instead_of_a_folder(result_folder: Path, tmp_path: Path):
-    from scipy.io import loadmat
-
-    file = tmp_path / "walk.mat"
-    export_result(result_folder, "mat", file)
-    assert "cube" in loadmat(file)
-    assert [one.name for one in tmp_path.iterdir()] == ["walk.mat"]
-    with pytest.raises(InputError, match="exists"):
-        export_result(result_folder, "mat", file)
-    export_result(result_folder, "mat", file, overwrite=True)
-
-
 @pytest.mark.parametrize("kind", ["mp4", "webm"])
 def test_videos(result_folder: Path, tmp_path: Path, kind: str):
     has("av")
@@ -151,11 +139,6 @@ def test_what_is_missing_is_said(
     assert main(["export", str(result_folder), *arguments]) == 2
     assert capsys.readouterr().err.count("\n") == 1
     assert not list(tmp_path.iterdir())
-
-
-def test_a_folder_without_a_result_is_refused(tmp_path: Path):
-    with pytest.raises(InputError, match="holds no radar"):
-        export_result(tmp_path, "mat", tmp_path / "out")
 
 
 def test_two_radars_at_a_right_angle_as_hupr_has_them(result_folder: Path, tmp_path: Path):

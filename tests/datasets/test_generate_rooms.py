@@ -5,9 +5,6 @@ import json
 import os
 import shutil
 import signal
-import subprocess
-import sys
-import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,7 +13,7 @@ import pytest
 
 from mmweaver.core.boards import AWR1843, IDEAL_BOARD
 from mmweaver.core.errors import InputError
-from mmweaver.core.staging import is_being_written, staging_path
+from mmweaver.core.staging import staging_path
 from mmweaver.datasets import generate_rooms
 from mmweaver.datasets.dataset_plan import DatasetPlan
 from mmweaver.datasets.dataset_store import PLAN_FILE, read_rooms
@@ -93,31 +90,10 @@ def test_a_room_written_in_the_meantime_is_kept(folder: Path, tmp_path: Path):
     assert not list(again.glob(".office*"))
 
 
-def test_on_ray_it_is_the_same_to_the_bit(folder: Path, tmp_path: Path):
-    pytest.importorskip("ray")
-    reports = generate_dataset(tmp_path / "set", PLAN, AWR1843, workers=2, ray_address="local")
-    assert sorted(report.name for report in reports) == ["office_000", "office_001"]
-    assert contents(tmp_path / "set") == contents(folder)
-
-
 def contents(folder: Path) -> dict[str, str]:
     """{file: its sha256}."""
     files = (file for file in sorted(folder.rglob("*")) if file.is_file())
     return {str(file.relative_to(folder)): hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
-
-
-@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="the state of a process is not to be had here")
-def test_leftovers_of_a_zombie_worker_are_removed(tmp_path: Path):
-    """A killed worker stays a zombie until its parent waits for it."""
-    child = subprocess.Popen([sys.executable, "-c", "pass"])
-    deadline = time.monotonic() + 30
-    while Path(f"/proc/{child.pid}/stat").exists() and time.monotonic() < deadline:
-        if Path(f"/proc/{child.pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z":
-            break
-        time.sleep(0.01)
-    own = staging_path(tmp_path / "office_000")
-    assert not is_being_written(own.with_name(own.name.replace(f"-{os.getpid()}-", f"-{child.pid}-")))
-    child.wait()
 
 
 def test_a_set_begun_and_killed_at_once_is_resumed(folder: Path, tmp_path: Path):
@@ -139,30 +115,6 @@ def test_a_set_begun_and_killed_at_once_is_resumed(folder: Path, tmp_path: Path)
             continue
         open_dataset(part, PLAN, AWR1843)
         assert contents(part) == contents(tmp_path / "begun")
-
-
-@pytest.mark.slow  # one that finds a room written in the meantime: test_a_room_written_in_the_meantime_is_kept
-def test_several_that_start_at_once_make_one_set(folder: Path, tmp_path: Path):
-    code = (
-        "import sys; from pathlib import Path; from mmweaver.datasets.dataset_plan import DatasetPlan;"
-        "from mmweaver.core.boards import AWR1843; from mmweaver.datasets.generate_rooms import open_dataset;"
-        "sys.stdin.read();"
-        "open_dataset(Path(sys.argv[1]), DatasetPlan(kinds=('office',), lightings=('day',), num_layouts=2,"
-        " sequences_a_room=2, num_frames=2), AWR1843)"
-    )
-    words = [sys.executable, "-c", code, str(tmp_path / "set")]
-    several = [subprocess.Popen(words, stdin=subprocess.PIPE) for _ in range(3)]
-    for one in several:
-        assert one.stdin is not None
-        one.stdin.close()
-    assert [one.wait() for one in several] == [0, 0, 0]
-    open_dataset(tmp_path / "begun", PLAN, AWR1843)
-    assert contents(tmp_path / "set") == contents(tmp_path / "begun")
-
-
-def test_another_radar_of_the_same_name_is_refused(folder: Path):
-    with pytest.raises(InputError, match="another radar"):
-        open_dataset(folder, PLAN, replace(AWR1843, tx_power_dbm=3.0))
 
 
 def test_a_killed_worker_is_one_line_and_not_a_wait_for_ever(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

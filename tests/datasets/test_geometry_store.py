@@ -1,7 +1,5 @@
 """A data set without signals: synthesised ones equal stored ones, and no ray is cast."""
 
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,10 +21,6 @@ pytest.importorskip("zarr")
 @pytest.fixture(scope="module")
 def folders(tiny_geometry: Path, tiny_signals: Path) -> dict[bool, Path]:
     return {True: tiny_geometry, False: tiny_signals}
-
-
-def _size(folder: Path) -> int:
-    return sum(file.stat().st_size for file in folder.rglob("*") if file.is_file())
 
 
 def _error(got: np.ndarray, wanted: np.ndarray) -> float:
@@ -65,14 +59,6 @@ def test_another_realization_is_another_signal(folders: dict[bool, Path]):
     assert np.array_equal(other, room.cube(0, realization=7).values)
 
 
-def test_a_sequence_takes_little_space(folders: dict[bool, Path]):
-    with_signals, without = (
-        sum(_size(folders[key] / "office_000" / name) for name in names)
-        for key, names in ((False, ("iq",)), (True, ("geometry/node_joints_m", "geometry/visibility")))
-    )
-    assert without < with_signals / 50
-
-
 def test_geometry_of_another_body_surface_is_refused(folders: dict[bool, Path], monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("mmweaver.datasets.geometry_store.skin_mark", lambda: "another")
     with pytest.raises(InputError, match="another version"):
@@ -91,17 +77,3 @@ def test_geometry_at_other_instants_of_the_frame_is_refused(folders: dict[bool, 
 def test_signals_and_geometry_are_not_mixed(folders: dict[bool, Path]):
     with pytest.raises(InputError, match="another plan"):
         generate_dataset(folders[True], replace(TINY_PLAN, geometry_only=False), AWR1843)
-
-
-@pytest.mark.slow  # test_network_training.py trains on such a set; what is special here is the missing ray caster
-def test_the_network_trains_on_it_without_a_ray_caster(folders: dict[bool, Path], tmp_path: Path):
-    code = f"""
-import sys
-sys.modules["embreex"] = None
-from pathlib import Path
-from mmweaver.training.network_training import TrainingRecipe, train
-recipe = TrainingRecipe(steps=2, batch_size=1, frames=2, validate_every=2, validation_batches=1, warm_up_steps=1)
-done = train(Path({str(folders[True])!r}), Path({str(tmp_path)!r}), recipe)
-assert done.step == 2 and done.best.value < 100
-"""
-    subprocess.run([sys.executable, "-c", code], check=True)

@@ -7,11 +7,9 @@ from mmweaver.core.errors import InputError
 from mmweaver.datasets.paired_sampling import (
     MAX_ATTEMPTS,
     MAX_OWN_ATTEMPTS,
-    PlannedSequence,
     StartPlace,
     paired_draws,
     places_of,
-    shuffled,
     unpaired_reasons,
 )
 from mmweaver.weaver.front_door import Weaver
@@ -82,11 +80,3 @@ def test_places_are_far_apart_and_free():
     assert len(places) == 5
     gaps = np.linalg.norm(places[:, None] - places[None], axis=-1)[np.triu_indices(5, 1)]
     assert gaps.min() > 0.3
-
-
-def test_the_order_is_shuffled():
-    draw = next(paired_draws(PLACES, 1, 1, 0, 1, serves_all))[0]
-    sequences = [PlannedSequence(draw=draw, label=n % 3, sentence=0, text="") for n in range(60)]
-    order = [one.label for one in shuffled(sequences, 0)]
-    assert order != [one.label for one in sequences]
-    assert sorted(order) == sorted(one.label for one in sequences)

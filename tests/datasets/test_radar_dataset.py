@@ -1,6 +1,5 @@
 """The data set for PyTorch: keys, shapes, splits, workers, and a network that learns from it."""
 
-import warnings
 from pathlib import Path
 
 import numpy as np
@@ -34,19 +33,6 @@ def test_features_are_those_of_the_cube(activity_set: Path):  # noqa: F811
     np.testing.assert_array_equal(RadarDataset(stored, ("rd",))[3]["rd"].numpy(), range_doppler_db(stored.cube(3)))
 
 
-def test_signals_are_stored_to_float16(activity_set: Path):  # noqa: F811
-    from mmweaver.weaver.front_door import Weaver
-
-    stored = read_activity_set(activity_set)
-    at = int(np.flatnonzero(stored.columns["draw"] == 0)[0])
-    start = stored.joints_m[at, 0, 0, :2]
-    assert np.isfinite(start).all()
-    own = stored.cube(at).values
-    assert np.abs(own).max() > 0
-    weaver = Weaver()
-    assert weaver.radar.num_range_bins == own.shape[1]
-
-
 def test_splits_hold_out_people(activity_set: Path):  # noqa: F811
     stored = read_activity_set(activity_set)
     people = {
@@ -74,14 +60,6 @@ def test_workers_give_the_same_batches(activity_set: Path):  # noqa: F811
     assert (alone[0]["points_mask"].sum(dim=1) > 0).all()
 
 
-def test_a_cache_gives_the_same(activity_set: Path):  # noqa: F811
-    data = RadarDataset(activity_set, ("rd",), cached=True)
-    assert data[0] is data[0]
-    assert torch.equal(data[0]["rd"], RadarDataset(activity_set, ("rd",))[0]["rd"])
-    with pytest.raises(IndexError):
-        data[len(data)]
-
-
 @pytest.mark.parametrize("wrong", [{"features": ("sound",)}, {"split": "exam"}, {"by": "frame"}, {"features": ()}])
 def test_unknown_names_are_refused(activity_set: Path, wrong: dict):  # noqa: F811
     with pytest.raises(InputError, match="unknown"):
@@ -100,20 +78,6 @@ def test_a_data_set_of_rooms_has_the_same_reader(tiny_signals: Path):
     assert 0 < len(train) <= len(data)
     with pytest.raises(InputError, match="one split"):
         RadarDataset(tiny_signals, ("label",), by="subject")
-
-
-def test_rooms_have_coordinates_and_texts_for_xarray(tiny_signals: Path):
-    xarray = pytest.importorskip("xarray")
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        tree = xarray.open_datatree(tiny_signals, engine="zarr")
-    rooms = [room for room in tree.children.values() if "iq" in room]
-    near = rooms[0].iq.sel(range=2.0, method="nearest")
-    assert abs(float(near.range) - 2.0) < 0.05
-    assert near.dims == ("sequence", "frame_time", "radial_velocity", "antenna", "part")
-    for name in ("label", "label_name", "text", "split", "subject"):
-        assert rooms[0][name].dims == ("sequence",)
-    tree.close()
 
 
 def test_xarray_opens_it_with_coordinates(activity_set: Path, recwarn: pytest.WarningsRecorder):  # noqa: F811

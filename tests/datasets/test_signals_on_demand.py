@@ -1,6 +1,5 @@
 """A set without stored signals makes the same ones when asked: in any order, in workers, by either method."""
 
-import json
 import pickle
 import shutil
 from dataclasses import replace
@@ -64,21 +63,6 @@ def test_workers_and_copies_make_the_same(both: tuple[ActivitySet, ActivitySet])
     torch.testing.assert_close(copy, alone["iq"][2], rtol=1e-5, atol=1e-9)
 
 
-@pytest.mark.slow  # the tests above call another method in the same way
-def test_physics_makes_its_signals_on_demand(tmp_path: Path):
-    (tmp_path / "a.toml").write_text('[activities]\nwave = "a person waves"\nstand = "a person stands"\n')
-    weaver = Weaver("physics")
-    cubes = []
-    for kind in ("none", "float32"):
-        options = replace(FEW, iq=kind, seconds=0.1, board="ideal")
-        SetBuilder(
-            tmp_path / kind, read_activities(tmp_path / "a.toml"), [weaver.sample_room()], weaver, options,
-            command="mmweaver dataset set", activities_text="",
-        ).make()  # fmt: skip
-        cubes.append(read_activity_set(tmp_path / kind).cube(0).values)
-    np.testing.assert_allclose(*cubes, rtol=0, atol=1e-12)
-
-
 def test_another_version_of_the_signal_is_noticed(both: tuple[ActivitySet, ActivitySet], tmp_path: Path):
     stored = read_activity_set(both[0].files.folder)
     assert stored.on_demand is not None
@@ -133,8 +117,3 @@ def test_moving_power_leaves_out_what_stands_still(both: tuple[ActivitySet, Acti
     assert moving_power_db(replace(cube, values=10 * cube.values)) == pytest.approx(
         moving_power_db(cube) + 20, abs=1e-3
     )
-
-
-def test_set_json_says_how_signals_are_kept(both: tuple[ActivitySet, ActivitySet]):
-    plan = json.loads((both[0].files.folder / "set.json").read_text())
-    assert plan["options"]["iq"] == "none"

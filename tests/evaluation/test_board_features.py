@@ -34,13 +34,6 @@ def test_the_if_response_is_found_in_the_noise():
     assert np.median(near_band(seen).values) == pytest.approx(-3, abs=0.5)
 
 
-def test_a_cut_cube_shows_neither_band_nor_leakage_nor_first_chirp():
-    seen = evidence(samples(ROOM), with_samples=False)
-    for feature in (last_of_band, near_band, leakage_level, leakage_spread, leakage_skirt, first_chirp):
-        with pytest.raises(CannotSeeError, match="raw samples"):
-            feature(seen)
-
-
 def test_noise_is_that_of_a_sample_whatever_the_number_of_loops():
     for loops in (8, 32):
         adc = samples([still(2.0, 0.5)], noise=0.1, config=replace(RADAR, num_loops=loops))

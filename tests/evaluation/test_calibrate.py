@@ -18,7 +18,6 @@ from mmweaver.evaluation.antenna_fits import fit_channels
 from mmweaver.evaluation.calibrate import Calibration, calibrate
 from mmweaver.evaluation.receiver_fits import skirt_end
 from mmweaver.evaluation.signal_evidence import ComparedSignal, SignalEvidence
-from mmweaver.evaluation.time_fits import fit_drift
 from mmweaver.propagation.adc_synthesis import AdcSynthesis
 from mmweaver.propagation.board_correction import corrected
 from mmweaver.propagation.board_effects import BoardEffects
@@ -126,21 +125,6 @@ def test_stated_errors_of_antennas_hold_the_truth_as_often_as_they_say():
         within_twice.append(amiss_db < 2 * found.errors["channel_gain_db"])
     assert 0.55 < np.mean(within) < 0.85  # a standard error holds 0.68
     assert np.mean(within_twice) > 0.9
-
-
-def test_a_short_recording_says_how_far_its_drift_holds():
-    true_ppm, held, said = 0.9, [], 0
-    for room in range(12):
-        found = fit_drift([evidence_of(cluttered_room(Board(drift_ppm=true_ppm), frames=12, room=room))])
-        if found.is_found:
-            said += 1
-            low_ppm, high_ppm = map(float, re.search(r"\(([\d.]+) to ([\d.]+)\)", found.text).groups())
-            assert low_ppm < found.fields["drift_ppm"] < high_ppm
-            held.append(low_ppm < true_ppm < high_ppm)
-        else:
-            held.append(true_ppm < float(re.search(r"([\d.]+) ppm over longer times", found.text)[1]))
-    assert said >= 6
-    assert 0.55 < np.mean(held) <= 1.0
 
 
 def test_it_says_what_it_could_not_see(found: Calibration, tmp_path: Path):

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.core.errors import InputError
 from mmweaver.evaluation.compared_sides import common_axes, common_window_m, maps_of
 from mmweaver.evaluation.signal_evidence import SignalEvidence
 from tests.evaluation.made_signals import RADAR, evidence, samples, still
@@ -55,21 +54,3 @@ def test_without_a_scale_decibels_are_over_noise():
     assert "noise" in axes.reference
     peak_db = maps_of(unknown, axes)["range_profile"].max()
     assert peak_db == pytest.approx(60, abs=2)  # amplitude 1 over noise of 1e-3 a sample
-
-
-def test_ranges_that_do_not_meet_are_one_line():
-    near, far = (
-        evidence(
-            samples([still(1.0)], config=replace(RADAR, first_range_bin=low, num_range_bins=16))
-        ).signal.cube.grid.range_m
-        for low in (0, 30)
-    )
-    with pytest.raises(InputError, match=r"0\.00 to 1\.32 m.*2\.64 to 3\.96 m"):
-        common_window_m(("A", "B"), (near, far))
-
-
-def test_two_loops_have_no_doppler_map():
-    few = evidence(samples(POINTS, config=replace(RADAR, num_loops=2)))
-    axes = common_axes(few, few)
-    assert axes.radial_velocity_mps is None
-    assert "range_doppler" not in maps_of(few, axes)

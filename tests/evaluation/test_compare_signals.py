@@ -83,14 +83,6 @@ def test_lost_frames_are_left_out_and_a_signal_of_zeros_is_one_line():
         compare(whole, replace(whole, samples=0 * lost))
 
 
-def test_nothing_in_common_is_one_line():
-    near, far = (replace(RADAR, first_range_bin=low, num_range_bins=8) for low in (0, 40))
-    from mmweaver.signal.cube import radar_cube
-
-    with pytest.raises(InputError, match=r"0\.00 to 0\.62 m.*3\.52 to 4\.14 m"):
-        compare(*(radar_cube(replace(made(0), config=config)) for config in (near, far)))
-
-
 def test_recorded_boards_have_the_values_that_were_found_in_them(real_data: Path):
     """Noise at both ends of the band, clutter, plane waves, antennas, leakage: two TI boards, one by Infineon."""
     folder = real_data / "radar" / "iwr6843_dca1000"

@@ -10,7 +10,7 @@ import pytest
 from mmweaver.compression.mmw_codec import compress_cube
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud, PoseSequence
-from mmweaver.evaluation.compared_sides import MAX_RECORDINGS, signals_of
+from mmweaver.evaluation.compared_sides import signals_of
 from mmweaver.io.dca1000 import write_bin
 from mmweaver.io.npz_files import write_points_npz, write_radar_npz
 from mmweaver.io.stream_folder import StreamFolder
@@ -52,21 +52,6 @@ def test_files_and_folders_of_every_kind(tmp_path: Path):
     names = [one.name for one in signals_of(tmp_path / "set", RawReading(), "A")]
     assert names == ["one", "stream", "two", "walk.mmw"]
     assert len(signals_of([CUBE, ADC, str(result)], RawReading(), "A")) == 3
-
-
-def test_a_folder_of_too_many_recordings_is_refused_before_one_is_read(tmp_path: Path):
-    for number in range(MAX_RECORDINGS + 1):
-        (tmp_path / f"{number}.mmw").write_bytes(b"not even a recording")
-    with pytest.raises(InputError, match=f"holds {MAX_RECORDINGS + 1} recordings; .* at most {MAX_RECORDINGS}"):
-        signals_of(tmp_path, RawReading(), "A")
-
-
-def test_a_cube_without_its_radar_is_read_by_the_one_that_is_given(tmp_path: Path):
-    write_radar_npz(tmp_path / "cube.npz", CUBE)
-    (found,) = signals_of(tmp_path / "cube.npz", RawReading(radar=CUBE.config, tx_order=(0, 2, 1)), "A")
-    assert found.cube.config == CUBE.config
-    with pytest.raises(InputError, match="give the radar"):
-        signals_of(tmp_path / "cube.npz", RawReading(), "A")
 
 
 def test_samples_of_a_result_are_in_the_scale_of_its_cube(tmp_path: Path):

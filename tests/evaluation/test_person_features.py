@@ -36,15 +36,6 @@ def test_energy_behind_a_walking_body(behind_m: float, near_m: float, far_m: flo
     assert np.median(alone.values) < -30
 
 
-def test_an_empty_room_and_a_cut_range_show_nothing_behind_a_body():
-    with pytest.raises(CannotSeeError, match="no movement"):
-        behind_body(evidence(samples([still(2.0)])), 0.6, 1.0)
-    with pytest.raises(CannotSeeError, match=r"4\.5 m"):
-        behind_body(evidence(samples([walking(3.2, 1.0)]), with_samples=False), 1.0, 2.0)
-    with pytest.raises(CannotSeeError, match="loops"):
-        behind_body(evidence(samples([walking(2.0, 1.0)], config=replace(RADAR, num_loops=2))), 0.6, 1.0)
-
-
 def test_slow_time_of_a_seated_person():
     frames = int(SECONDS / SLOW.frame_period_s)
     tremor_m = 1e-3 * 10 ** (-23 / 20)

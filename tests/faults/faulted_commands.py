@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 VARYING = ("log.jsonl",)  # its lines say how long they took
 DEMO = "generate --demo --quiet --frames 2 --no-pictures --method physics"
 DATASET = "--rooms office --layouts 2 --sequences 1 --frames 2 --quiet"
-LABELLED = "--each 1 --seconds 0.2 --subjects 1 --method physics --quiet"
+LABELLED = "--per-class 1 --seconds 0.6 --subjects 1 --method physics --quiet"
 TRAIN = "train weaver --encoder small --steps 2 --batch 1 --save-every 0 --validate-every 1 --device cpu --quiet"
-GENERATED = ("mmweaver.weaver.room_reader:reconstruct", "mmweaver.weaver.front_door:compose_request")
+GENERATED = ("mmweaver.weaver.room_reader:reconstruct", "mmweaver.weaver.composition:compose_request")
 ROOMS = tuple(f"mmweaver.scene.procedural.procedural_room:{name}" for name in ("make_room", "ProceduralRoom.photo"))
 TRAINED = (
     "mmweaver.training.network_examples:reconstruct", "mmweaver.training.network_examples:power_maps",
@@ -78,22 +78,22 @@ def faulted_commands(inputs: Path) -> list[FaultedCommand]:
     labels = f"--activities {inputs}/activities.toml"
     wave = f"{DEMO} --text 'a person waves'"
     place = Path(mmweaver.__file__).parent / "sample"
-    sample = f"--rgb {place}/rgb.webp --depth {place}/depth.png --camera {place}/camera.json"
+    sample = f"--room {place}"
 
     return [
-        FaultedCommand("motion", "motion 'a person waves' --out OUT/m.npz --picture OUT/m.png"),
+        FaultedCommand("motion", "motion 'a person waves' --out OUT/m.npz --out OUT/m.png"),
         FaultedCommand("decompress", f"decompress {mmw} -o OUT/d/radar.npz --quiet"),
         FaultedCommand("decompress --overwrite", f"decompress {mmw} -o OUT/radar.npz --quiet --overwrite",
                        before=f"decompress {mmw} -o OUT/radar.npz --quiet --frames 0:1"),
         FaultedCommand("compress", f"compress {walk} -o OUT/a.mmw --bytes 3000 --quiet"),
         FaultedCommand("compress --append", f"compress {walk} -o OUT/a.mmw --bytes 3000 --quiet --append", appends=True,
                        before=f"compress {walk} -o OUT/a.mmw --bytes 3000 --quiet"),
-        FaultedCommand("compress --lossless", f"compress {samples} -o OUT/a.mmwl --lossless"),
+        FaultedCommand("compress --lossless", f"compress {samples} -o OUT/a.mmwl --quality lossless"),
         FaultedCommand("process", f"process {samples} --no-pictures --out OUT/p"),
         FaultedCommand("points", f"points {walk}/points.npz -o OUT/points.npz --quiet"),
         FaultedCommand("export", f"export {walk} --to mars --out OUT/e"),
         FaultedCommand("sample", "sample OUT/s --quiet", computes=GENERATED),
-        FaultedCommand("rooms", "rooms OUT/r --kinds office --layouts 1 --quiet", computes=ROOMS),
+        FaultedCommand("rooms", "rooms OUT/r --rooms office --layouts 1 --quiet", computes=ROOMS),
         FaultedCommand("generate", f"{wave} --out OUT/g", computes=GENERATED),
         FaultedCommand("generate --overwrite", f"{wave} --seed 1 --out OUT/g --overwrite", computes=GENERATED,
                        before=f"{wave} --seed 2 --out OUT/g"),

@@ -23,11 +23,7 @@ def main() -> int:
     arguments = parser.parse_args()
     limit_process()
     reports = run(
-        arguments.seed,
-        cases=arguments.cases,
-        total=arguments.total,
-        seconds=arguments.seconds,
-        only=arguments.only,
+        arguments.seed, cases=arguments.cases, total=arguments.total, seconds=arguments.seconds, only=arguments.only
     )
     print(table(reports))
     for report in reports:

@@ -28,7 +28,7 @@ OUT_OF_MEMORY = "needs more memory than there is"  # a refusal that the machine,
 _RESET, _STATUS = Path("/proc/self/clear_refs"), Path("/proc/self/status")
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Reader:
     """One reader: a damaged file of a case, how it is read, and what is wrong with a result (None: nothing)."""
 

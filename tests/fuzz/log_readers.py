@@ -106,10 +106,7 @@ def _clouds() -> list[Reader]:
         for index in range(4)
     )
     table = np.column_stack([XYZV, [5.0, 6.0, 7.0]])
-    archives = [
-        {"frame": np.array([3, 3, 5]), "pts": table},
-        {"frame": np.array([0, 1]), "pts": np.ones((2, 8))},
-    ]
+    archives = [{"frame": np.array([3, 3, 5]), "pts": table}, {"frame": np.array([0, 1]), "pts": np.ones((2, 8))}]
 
     npz = {"damaged": lambda rng: m.mutated_npz(rng.choice(archives), rng)}
     rows = [[*map(float, row), 21.5, 30.0, 255] for row in XYZV]
@@ -169,7 +166,7 @@ def _captures(folder: Path, config: RadarConfig) -> list[Reader]:
 
 def _lossless(data: bytes, rng: random.Random) -> bytes:
     """A damaged header or block under right checksums, or damaged bytes."""
-    if rng.random() < 0.3:
+    if rng.random() < 0.3 or isinstance(rng, m.Undamaged):
         return m.mutated_bytes(data, rng)
     magic, version, size = LOSSLESS.unpack_from(data)
     end = LOSSLESS.size + size
@@ -258,7 +255,7 @@ def _tensors(folder: Path) -> list[Reader]:
     def weights(rng: random.Random) -> bytes:
         tensors = {name: value.clone() for name, value in state.items()}
         card: Any = json.dumps(CARD)
-        kind = rng.randrange(4)
+        kind = 3 if isinstance(rng, m.Undamaged) else rng.randrange(4)
         if kind == 0:
             card = m.json_bytes(m.mutated_json(CARD, rng), rng).decode("utf-8", "replace")
         elif kind == 1:

@@ -34,4 +34,4 @@ def _reader(suffix: str, sound: list[bytes]) -> Reader:
         depth_m = found.photo.depth_m
         return wrong_numbers(depth_m[~np.isnan(depth_m)])
 
-    return Reader(name=f"mesh {suffix}", suffix=suffix, damaged=damaged, read=read_mesh_photo, wrong=wrong)
+    return Reader(f"mesh {suffix}", suffix, damaged, read_mesh_photo, wrong)

@@ -41,6 +41,7 @@ from mmweaver.scene.photo.picture_files import read_depth, read_rgb
 from mmweaver.scene.segmentation.class_file import read_class_file
 from tests import captures
 from tests.fuzz import mutators as m
+from tests.fuzz.folder_readers import folder_readers
 from tests.fuzz.harness import Reader, wrong_numbers
 from tests.fuzz.log_readers import log_readers
 from tests.fuzz.mesh_readers import mesh_readers
@@ -70,6 +71,7 @@ def make_readers(folder: Path) -> list[Reader]:
         *_others(folder),
         *set_readers(folder),
         *log_readers(folder, config),
+        *folder_readers(folder),
         *mesh_readers(folder),
     ]
 
@@ -86,36 +88,26 @@ def _radars() -> list[Reader]:
         load_firmware(str(path))
         return load_radar(str(path))
 
+    genesis = rf_genesis_settings(PRESETS["mmmesh"])
+
     return [
         Reader(
-            name="radar.json",
-            suffix=".json",
-            read=lambda path: load_radar(str(path)),
-            wrong=_wrong_radar,
-            damaged=lambda rng: _json_of(rng.choice(presets), rng),
+            "radar.json",
+            ".json",
+            lambda rng: _json_of(rng.choice(presets), rng),
+            lambda path: load_radar(str(path)),
+            _wrong_radar,
         ),
-        Reader(name="TI cfg", suffix=".cfg", read=ti, wrong=_wrong_radar, damaged=lambda rng: _text_of(cfg, rng)),
+        Reader("TI cfg", ".cfg", lambda rng: _text_of(cfg, rng), ti, _wrong_radar),
         Reader(
-            name="Infineon config",
-            suffix=".json",
-            read=studio,
-            wrong=_wrong_radar,
-            damaged=lambda rng: _json_of({"device_config": {"fmcw_single_shape": CHIRP}}, rng),
+            "Infineon config",
+            ".json",
+            lambda rng: _json_of({"device_config": {"fmcw_single_shape": CHIRP}}, rng),
+            studio,
+            _wrong_radar,
         ),
-        Reader(
-            name="RF-Genesis config",
-            suffix=".json",
-            read=studio,
-            wrong=_wrong_radar,
-            damaged=lambda rng: _json_of(rf_genesis_settings(PRESETS["mmmesh"]), rng),
-        ),
-        Reader(
-            name="mmWave Studio json",
-            suffix=".mmwave.json",
-            read=studio,
-            wrong=_wrong_radar,
-            damaged=lambda rng: _json_of(STUDIO, rng),
-        ),
+        Reader("RF-Genesis config", ".json", lambda rng: _json_of(genesis, rng), studio, _wrong_radar),
+        Reader("mmWave Studio json", ".mmwave.json", lambda rng: _json_of(STUDIO, rng), studio, _wrong_radar),
     ]
 
 
@@ -175,39 +167,39 @@ def _pictures(folder: Path) -> list[Reader]:
 
     return [
         Reader(
-            name="colour picture",
-            suffix=".png",
-            read=lambda path: read_rgb(path)[0],
-            damaged=lambda rng: _picture_of(rng.choice(rgb), rng),
-            wrong=lambda a: None if a.dtype == np.uint8 and a.ndim == 3 and a.size else f"colours {a.dtype} {a.shape}",
+            "colour picture",
+            ".png",
+            lambda rng: _picture_of(rng.choice(rgb), rng),
+            lambda path: read_rgb(path)[0],
+            lambda a: None if a.dtype == np.uint8 and a.ndim == 3 and a.size else f"colours {a.dtype} {a.shape}",
         ),
         Reader(
-            name="depth picture",
-            suffix=".png",
-            read=lambda path: read_depth(path, None)[0],
-            wrong=_wrong_depth,
-            damaged=lambda rng: _picture_of(rng.choice(depth), rng),
+            "depth picture",
+            ".png",
+            lambda rng: _picture_of(rng.choice(depth), rng),
+            lambda path: read_depth(path, None)[0],
+            _wrong_depth,
         ),
         Reader(
-            name="depth npy",
-            suffix=".npy",
-            read=lambda path: read_depth(path, None)[0],
-            wrong=_wrong_depth,
-            damaged=lambda rng: m.mutated_npy(rng.choice(arrays), rng),
+            "depth npy",
+            ".npy",
+            lambda rng: m.mutated_npy(rng.choice(arrays), rng),
+            lambda path: read_depth(path, None)[0],
+            _wrong_depth,
         ),
         Reader(
-            name="class mask",
-            suffix=".png",
-            read=lambda path: read_class_file(path, WIDTH, HEIGHT),
-            damaged=lambda rng: _picture_of(classes, rng),
+            "class mask",
+            ".png",
+            lambda rng: _picture_of(classes, rng),
+            lambda path: read_class_file(path, WIDTH, HEIGHT),
         ),
-        Reader(name="class names", suffix=".json", read=mask, damaged=lambda rng: _json_of(names, rng)),
+        Reader("class names", ".json", lambda rng: _json_of(names, rng), mask),
         Reader(
-            name="camera.json",
-            suffix=".camera.json",
-            read=camera,
-            damaged=lambda rng: _json_of(CAMERA, rng),
-            wrong=lambda c: None if np.isfinite([c.fx, c.fy, c.cx, c.cy]).all() else "a camera that is not finite",
+            "camera.json",
+            ".camera.json",
+            lambda rng: _json_of(CAMERA, rng),
+            camera,
+            lambda c: None if np.isfinite([c.fx, c.fy, c.cx, c.cy]).all() else "a camera that is not finite",
         ),
     ]
 
@@ -236,7 +228,7 @@ def _recordings(folder: Path, config: Any, adc: AdcCube) -> list[Reader]:
     mapping = ArrayMapping(path=folder / "map.toml", axes=axes)
 
     def pcap(rng: random.Random) -> bytes:
-        if rng.random() < 0.5:
+        if rng.random() < 0.5 or isinstance(rng, m.Undamaged):
             return m.mutated_bytes(captures.pcap_of(packets[:40]), rng)
         damaged = list(packets[:40])
         for _ in range(rng.choice((1, 1, 3))):
@@ -259,40 +251,34 @@ def _recordings(folder: Path, config: Any, adc: AdcCube) -> list[Reader]:
 
     return [
         Reader(
-            name="adc_data.bin",
-            suffix=".bin",
-            read=lambda path: read_bin(path, config).samples,
-            wrong=wrong_numbers,
-            damaged=lambda rng: m.mutated_bytes(raw, rng),
+            "adc_data.bin",
+            ".bin",
+            lambda rng: m.mutated_bytes(raw, rng),
+            lambda path: read_bin(path, config).samples,
+            wrong_numbers,
         ),
         Reader(
-            name="packets with headers",
-            suffix=".bin",
-            read=lambda path: read_recording(path, config).adc.samples,
-            wrong=wrong_numbers,
-            damaged=lambda rng: m.mutated_bytes(headed, rng),
+            "packets with headers",
+            ".bin",
+            lambda rng: m.mutated_bytes(headed, rng),
+            lambda path: read_recording(path, config).cube.values,
+            wrong_numbers,
         ),
         Reader(
-            name="mapped npy",
-            suffix=".npy",
-            read=lambda path: read_mapped(path, mapping, config).samples,
-            wrong=wrong_numbers,
-            damaged=lambda rng: m.mutated_npy(samples, rng),
+            "mapped npy",
+            ".npy",
+            lambda rng: m.mutated_npy(samples, rng),
+            lambda path: read_mapped(path, mapping, config).samples,
+            wrong_numbers,
         ),
         Reader(
-            name="samples npy",
-            suffix=".npy",
-            read=lambda path: read_adc_npy(path, config, axes).samples,
-            wrong=wrong_numbers,
-            damaged=lambda rng: m.mutated_npy(samples, rng),
+            "samples npy",
+            ".npy",
+            lambda rng: m.mutated_npy(samples, rng),
+            lambda path: read_adc_npy(path, config, axes).samples,
+            wrong_numbers,
         ),
-        Reader(
-            name="dca.pcap",
-            suffix=".pcap",
-            read=lambda path: read_pcap(path, config).adc.samples,
-            wrong=wrong_numbers,
-            damaged=pcap,
-        ),
+        Reader("dca.pcap", ".pcap", pcap, lambda path: read_pcap(path, config).adc.samples, wrong_numbers),
         _capture(folder),
     ]
 
@@ -321,7 +307,7 @@ def _capture(folder: Path) -> Reader:
         finally:
             (place / name.decode()).write_bytes(sound[name.decode()])
 
-    return Reader(name="capture folder", suffix=".member", read=read, damaged=damaged)
+    return Reader("capture folder", ".member", damaged, read)
 
 
 # results ------------------------------------------------------------------------------------------------------------
@@ -349,34 +335,10 @@ def _results(folder: Path, config: Any, adc: AdcCube) -> list[Reader]:
         return read_cube(path).values
 
     return [
-        Reader(
-            name="radar.npz",
-            suffix=".npz",
-            read=radar,
-            wrong=wrong_numbers,
-            damaged=lambda rng: m.mutated_npz(held["radar"], rng),
-        ),
-        Reader(
-            name="pose.npz",
-            suffix=".npz",
-            read=read_poses_npz,
-            wrong=_wrong_poses,
-            damaged=lambda rng: m.mutated_npz(held["pose"], rng),
-        ),
-        Reader(
-            name="points.npz",
-            suffix=".npz",
-            read=read_points_npz,
-            wrong=_wrong_points,
-            damaged=lambda rng: m.mutated_npz(held["points"], rng),
-        ),
-        Reader(
-            name="mmw",
-            suffix=".mmw",
-            read=described,
-            wrong=wrong_numbers,
-            damaged=lambda rng: m.mutated_mmw(rng.choice(mmw), rng),
-        ),
+        Reader("radar.npz", ".npz", lambda rng: m.mutated_npz(held["radar"], rng), radar, wrong_numbers),
+        Reader("pose.npz", ".npz", lambda rng: m.mutated_npz(held["pose"], rng), read_poses_npz, _wrong_poses),
+        Reader("points.npz", ".npz", lambda rng: m.mutated_npz(held["points"], rng), read_points_npz, _wrong_points),
+        Reader("mmw", ".mmw", lambda rng: m.mutated_mmw(rng.choice(mmw), rng), described, wrong_numbers),
     ]
 
 
@@ -420,47 +382,19 @@ def _others(folder: Path) -> list[Reader]:
         return lambda path: read_motion(path, fps=fps).joints_m
 
     return [
+        Reader("motion c3d", ".c3d", lambda rng: m.mutated_bytes(c3d, rng), motion(None), wrong_numbers),
+        Reader("motion npy", ".npy", lambda rng: m.mutated_npy(rest, rng), motion(20.0), wrong_numbers),
         Reader(
-            name="motion npy",
-            suffix=".npy",
-            read=motion(20.0),
-            wrong=wrong_numbers,
-            damaged=lambda rng: m.mutated_npy(rest, rng),
+            "motion npz",
+            ".npz",
+            lambda rng: m.mutated_npz(rng.choice((amass, joints)), rng),
+            motion(None),
+            wrong_numbers,
         ),
-        Reader(
-            name="motion npz",
-            suffix=".npz",
-            read=motion(None),
-            wrong=wrong_numbers,
-            damaged=lambda rng: m.mutated_npz(rng.choice((amass, joints)), rng),
-        ),
-        Reader(
-            name="motion bvh",
-            suffix=".bvh",
-            read=motion(None),
-            wrong=wrong_numbers,
-            damaged=lambda rng: _text_of(bvh, rng),
-        ),
-        Reader(
-            name="motion c3d",
-            suffix=".c3d",
-            read=motion(None),
-            wrong=wrong_numbers,
-            damaged=lambda rng: m.mutated_bytes(c3d, rng),
-        ),
-        Reader(
-            name="safetensors",
-            suffix=".safetensors",
-            read=read_tensors,
-            damaged=lambda rng: m.mutated_bytes(tensors, rng),
-        ),
-        Reader(name="request.toml", suffix=".toml", read=read_toml, damaged=lambda rng: _text_of(toml, rng)),
-        Reader(
-            name="texts",
-            suffix=".txt",
-            read=read_texts,
-            damaged=lambda rng: _text_of("a person waves\n# no\nwalks\n", rng),
-        ),
+        Reader("motion bvh", ".bvh", lambda rng: _text_of(bvh, rng), motion(None), wrong_numbers),
+        Reader("safetensors", ".safetensors", lambda rng: m.mutated_bytes(tensors, rng), read_tensors),
+        Reader("request.toml", ".toml", lambda rng: _text_of(toml, rng), read_toml),
+        Reader("texts", ".txt", lambda rng: _text_of("a person waves\n# no\nwalks\n", rng), read_texts),
     ]
 
 

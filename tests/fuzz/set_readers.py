@@ -162,9 +162,11 @@ def members_reader(name: str, data: Path, read: Callable[[Path], Any], wrong: Ca
                     (data / entry).unlink(missing_ok=True)
 
     def damaged(rng: random.Random) -> bytes:
+        if isinstance(rng, m.Undamaged):
+            return archive_of({})
         return archive_of(_damaged_array(sound, rng) if "zarr" in name else _damaged_member(sound, rng))
 
-    return Reader(name=name, suffix=".members.zip", read=read_damaged, damaged=damaged, wrong=wrong)
+    return Reader(name, ".members.zip", damaged, read_damaged, wrong)
 
 
 def archive_of(members: dict[str, bytes]) -> bytes:
@@ -178,8 +180,8 @@ def archive_of(members: dict[str, bytes]) -> bytes:
 
 def _damaged_member(sound: dict[str, bytes], rng: random.Random) -> dict[str, bytes]:
     """One file damaged, most often a text."""
-    texts = [name for name in sound if name.endswith((".json", ".toml", SUMS))]
-    name = rng.choice(texts if rng.random() < 0.8 else sorted(sound))
+    texts = [name for name, data in sound.items() if data.isascii()]
+    name = rng.choice(texts if texts and rng.random() < 0.8 else sorted(sound))
     if name.endswith(".json") and rng.random() < 0.7:
         return {name: m.json_bytes(m.mutated_json(json.loads(sound[name]), rng), rng)}
     if name in texts and rng.random() < 0.7:

@@ -2,7 +2,6 @@
 
 import json
 import string
-import tempfile
 from collections.abc import Callable
 from dataclasses import fields, replace
 from pathlib import Path
@@ -22,29 +21,14 @@ from mmweaver.compression.mmw_codec import compress_cube, read_cube
 from mmweaver.core.boards import AWR1843, PRESETS
 from mmweaver.core.errors import MAX_CHARACTERS, InputError
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.records import AdcCube, CubeGrid, PointCloud, PoseSequence, RadarCube
+from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
 from mmweaver.core.safe_files.safe_zarr import open_zarr
-from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.core.tensor_files import read_tensors, write_tensors
-from mmweaver.datasets.cloud_layouts import write_mars, write_radhar
-from mmweaver.datasets.tensor_layouts import write_mmmesh, write_rf_genesis
 from mmweaver.datasets.zarr_arrays import put_array, put_sequences
 from mmweaver.io.dca1000 import read_bin, write_bin
-from mmweaver.io.npz_files import (
-    read_points_npz,
-    read_poses_npz,
-    read_radar_npz,
-    write_points_npz,
-    write_pose_npz,
-    write_radar_npz,
-)
-from mmweaver.io.peer_arrays import read_mmmesh, read_rf_genesis
-from mmweaver.io.point_clouds.read_points import read_points
 from mmweaver.io.radar_file import load_radar
-from mmweaver.io.stored_result import StoredResult
 from mmweaver.propagation.receiver import Impairments, Receiver
 from mmweaver.signal.cube import radar_cube
-from tests.cubes import point_cube
 
 SMALL = replace(AWR1843, num_loops=2, num_samples=8, num_range_bins=4, first_range_bin=0)
 CHECKS = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow, HealthCheck.filter_too_much]
@@ -135,36 +119,6 @@ def samples(config: RadarConfig = SMALL) -> st.SearchStrategy[AdcCube]:
 
 
 COLUMNS = ("x_m", "y_m", "z_m", "radial_velocity_mps", "snr_db")
-CLOUDS = st.integers(0, 6).flatmap(
-    lambda size: st.builds(
-        PointCloud,
-        frame=hnp.arrays(np.int64, size, elements=st.integers(0, 50)).map(np.sort),
-        **{name: hnp.arrays(np.float32, size, elements=finite(32, 100)) for name in COLUMNS},
-    )
-)
-
-
-@deep
-def test_a_result_folder_is_read_as_it_was_written(depth: int, tmp_path: Path):
-    def example(cube: RadarCube, cloud: PointCloud, people: int) -> None:
-        (tmp_path / "radar.json").write_text(cube.config.to_json())
-        write_radar_npz(tmp_path / "radar.npz", cube)
-        write_points_npz(tmp_path / "points.npz", cloud)
-        time_s = np.arange(4) / 10
-        joints = np.resize(cube.values.real / 10, (4, NUM_JOINTS, 3)).astype(np.float32)
-        poses = [PoseSequence(time_s=time_s, joints_m=joints + k, height_m=1.7, subject=k) for k in range(people)]
-        write_pose_npz(tmp_path / "pose.npz", *poses)
-        again = read_radar_npz(tmp_path / "radar.npz")
-        assert again.values.tobytes() == cube.values.tobytes()
-        assert again.config == cube.config
-        for one in fields(PointCloud):
-            assert np.array_equal(getattr(read_points_npz(tmp_path / "points.npz"), one.name), getattr(cloud, one.name))
-        for pose, found in zip(poses, read_poses_npz(tmp_path / "pose.npz"), strict=True):
-            assert np.array_equal(found.joints_m, pose.joints_m)
-            assert np.array_equal(found.time_s, pose.time_s)
-            assert (found.height_m, found.subject) == (pose.height_m, pose.subject)
-
-    hold(depth, 15, example, cube=cubes(), cloud=CLOUDS, people=st.integers(1, 3))
 
 
 @deep
@@ -241,40 +195,6 @@ def test_radars_tensors_and_zarr_arrays_are_read_as_they_were_written(depth: int
 
     radars = st.sampled_from(list(PRESETS.values()))
     hold(depth, 15, example, values=arrays, radar=radars, name=names, sharded=st.booleans())
-
-
-@deep
-def test_exports_are_read_as_they_were_written(depth: int, tmp_path: Path):
-    """Those of which this project has a reader; RadHAR and MARS print so many digits as theirs do."""
-    cube = point_cube(SMALL, num_frames=1)
-
-    (tmp_path / "adc_data.bin").touch()
-
-    def example(adc: AdcCube, cloud: PointCloud) -> None:
-        out = Path(tempfile.mkdtemp(dir=tmp_path))
-        pose = PoseSequence(
-            time_s=np.zeros(1), joints_m=np.zeros((1, NUM_JOINTS, 3), np.float32), height_m=1.7, subject=0
-        )
-        cloud = replace(cloud, frame=np.zeros_like(cloud.frame))
-        result = StoredResult(folder=tmp_path, cube=cube, points=cloud, poses=(pose,), meta={})
-        result.__dict__["adc"] = adc
-        write_rf_genesis(result, out)
-        assert np.array_equal(read_rf_genesis(out / "radar_frames.npy", adc.config).samples, adc.samples)
-        write_mmmesh(result, out)
-        for index, frame in enumerate(adc.samples):
-            assert np.array_equal(read_mmmesh(out / "adc" / f"{index:06d}.npy", adc.config).samples[0], frame)
-        if len(cloud.frame):
-            write_radhar(result, out)
-            _same_places(read_points(out / "radhar.txt"), cloud)
-            write_mars(result, out)
-            _same_places(read_points(out / "radar_data.csv"), cloud)
-
-    hold(depth, 4, example, adc=samples(), cloud=CLOUDS)
-
-
-def _same_places(found: PointCloud, cloud: PointCloud) -> None:
-    for name in ("x_m", "y_m", "z_m", "radial_velocity_mps"):
-        np.testing.assert_allclose(getattr(found, name), getattr(cloud, name), rtol=1e-3, atol=1e-4)
 
 
 # refusals -----------------------------------------------------------------------------------------------------------

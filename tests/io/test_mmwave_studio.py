@@ -11,7 +11,7 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.transmit_code import weights_of
-from mmweaver.io.mmwave_studio import is_mmwave_studio, read_mmwave_studio
+from mmweaver.io.mmwave_studio import read_mmwave_studio
 from mmweaver.io.radar_options import RadarOptions
 
 
@@ -121,31 +121,3 @@ def test_sub_frames_and_lanes(tmp_path: Path):
     path.write_text(json.dumps(values))
     assert read_mmwave_studio(path).lvds_lanes == 4
     assert read_mmwave_studio(path, RadarOptions(lanes=2)).lvds_lanes == 2
-
-
-def test_files_of_other_writers(tmp_path: Path):
-    """Without waveformType; the profile's phases steer the beam; a cascade is refused."""
-    setup = changed(lambda setup: setup.pop("waveformType"))
-    assert read_mmwave_studio(written(tmp_path, setup, swap=1)).lvds_iq_order == "qi"
-    setup["rlChirps"] = [chirp(0, 0, "0x7")]
-    setup["rlFrameCfg_t"].update(chirpStartIdx=0, chirpEndIdx=0)
-    setup["rlProfiles"][0]["rlProfileCfg_t"]["txPhaseShifter"] = "0x804000"  # 0, 90 and 180 degrees
-    config = read_mmwave_studio(written(tmp_path, setup))
-    assert np.allclose(weights_of(config.tx_code), [[1, -1j, -1]])
-    setup["rlChanCfg_t"]["cascading"] = 1
-    with pytest.raises(InputError, match="cascade"):
-        read_mmwave_studio(written(tmp_path, setup))
-
-
-@pytest.mark.parametrize("text", ["", "[]", "{}", '{"mmWaveDevices": []}', '{"mmWaveDevices": [3]}', "\xff"])
-def test_another_file_is_refused(tmp_path: Path, text: str):
-    path = tmp_path / "other.json"
-    path.write_text(text, encoding="latin-1")
-    with pytest.raises(InputError, match=r"other\.json"):
-        read_mmwave_studio(path)
-
-
-def test_recognition_of_the_format():
-    assert is_mmwave_studio({"mmWaveDevices": []})
-    assert not is_mmwave_studio([])
-    assert not is_mmwave_studio({"name": "awr1843"})

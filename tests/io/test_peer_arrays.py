@@ -70,14 +70,6 @@ def test_a_hupr_frame_shows_the_point_at_its_place(hupr_frame: Path):
     assert step == pytest.approx(-np.pi * direction_of(0.3, 0.1)[0], abs=0.05)
 
 
-def test_a_folder_of_hupr_frames(tmp_path: Path):
-    for frame, angle in enumerate((0.1, 0.4)):
-        np.save(tmp_path / f"{frame:09d}.npy", hupr_array(simulated_frame(azimuth_rad=angle)))
-    cube = read_recording(tmp_path).cube
-    assert cube.grid.frame_time_s.tolist() == [0.0, pytest.approx(0.1)]
-    assert np.array_equal(cube.values[1], read_recording(tmp_path / "000000001.npy", "hupr").cube.values[0])
-
-
 def test_mmmesh_samples_in_either_shape(tmp_path: Path):
     rng = stream(0, "mmmesh")
     frames = (rng.normal(size=(2, 3, 4, 128, 256)) + 1j * rng.normal(size=(2, 3, 4, 128, 256))).astype(np.complex64)

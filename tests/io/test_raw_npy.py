@@ -88,22 +88,3 @@ def test_wrong_axes_are_refused(tmp_path: Path, shape: tuple, axes: str, words: 
         read_adc_npy(saved(tmp_path, np.zeros(shape, np.complex64)), SMALL, axes)
     for word in words:
         assert word in str(caught.value)
-
-
-def test_wrong_files_are_refused(tmp_path: Path):
-    axes = "frame,loop,antenna,sample"
-    with pytest.raises(InputError, match="No such file"):
-        read_adc_npy(tmp_path / "none.npy", SMALL, axes)
-    with pytest.raises(InputError, match="complex samples"):
-        read_adc_npy(saved(tmp_path, np.zeros((2, 5, 12, 8))), SMALL, axes)
-    with pytest.raises(InputError, match="real samples"):
-        read_adc_npy(saved(tmp_path, np.zeros((8, 3, 64), np.complex64)), BGT60, "loop,rx,sample")
-    with pytest.raises(InputError, match="finite"):
-        read_adc_npy(saved(tmp_path, np.full((2, 5, 12, 8), np.nan + 0j)), SMALL, axes)
-    np.save(tmp_path / "object.npy", np.array([{}], dtype=object), allow_pickle=True)
-    np.savez(tmp_path / "several.npz", one=np.zeros(3))
-    (tmp_path / "text.npy").write_text("not an array")
-    (tmp_path / "empty.npy").write_bytes(b"")
-    for name in ("object.npy", "several.npz", "text.npy", "empty.npy"):
-        with pytest.raises(InputError, match=name):
-            read_adc_npy(tmp_path / name, SMALL, axes)

@@ -10,7 +10,6 @@ import pytest
 from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import AdcCube, CubeGrid, PointCloud, PoseSequence, RadarCube
-from mmweaver.datasets.verification import verify
 from mmweaver.io.dca1000 import read_bin
 from mmweaver.io.stream_folder import StreamFolder, sentences_of
 from mmweaver.recordings.read_recording import read_recording
@@ -56,16 +55,6 @@ def test_a_kill_leaves_what_was_whole(tmp_path: Path):
     (tmp_path / "live" / "parts" / ".00000003.part").mkdir()
     np.testing.assert_array_equal(read_recording(tmp_path / "live").cube.values, written)
     assert len(read_bin(tmp_path / "live" / "adc_data.bin", SMALL).samples) == 3
-
-
-def test_verify_checks_every_part(tmp_path: Path):
-    folder = StreamFolder(tmp_path / "live", {"seed": 0})
-    add(folder, 0, 3)
-    add(folder, 3, 2)
-    assert verify(tmp_path / "live").is_sound
-    cube = tmp_path / "live" / "parts" / "00000003" / "radar.npz"
-    cube.write_bytes(cube.read_bytes()[:-1])
-    assert [one.file for one in verify(tmp_path / "live").damaged] == [cube]
 
 
 def test_a_missing_part_is_noticed(tmp_path: Path):

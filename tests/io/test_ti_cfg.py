@@ -286,13 +286,3 @@ def test_a_bad_file_is_refused_with_the_reason(tmp_path: Path, old: str, new: st
     assert text.startswith(str(path))
     for word in words:
         assert word in text
-
-
-def test_a_file_that_cannot_be_read(tmp_path: Path):
-    with pytest.raises(InputError, match="No such file"):
-        read_ti_cfg(tmp_path / "none.cfg")
-    (tmp_path / "binary.cfg").write_bytes(bytes(range(256)))
-    with pytest.raises(InputError, match="mmWave SDK"):
-        read_ti_cfg(tmp_path / "binary.cfg")
-    with pytest.raises(InputError, match="pymmw"):
-        read_ti_cfg(written(tmp_path, '{"profileCfg": {"id": 0}}'))

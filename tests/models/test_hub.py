@@ -120,28 +120,6 @@ def test_of_a_run_only_weights_and_their_card_leave_the_machine(hub: type[Hub], 
     assert (there / "weights_2.safetensors").read_bytes() == (run / "weights_2.safetensors").read_bytes()
 
 
-@pytest.mark.parametrize("fault", ["no card", "other licence", "no front matter", "damaged", "no weights", "pickle"])
-def test_what_is_not_whole_is_not_uploaded(fault: str, hub: type[Hub], run: Path):
-    if fault == "no card":
-        (run / "README.md").unlink()
-    elif fault == "other licence":
-        (run / "README.md").write_text(PAGE.format(licence="mit"))
-    elif fault == "no front matter":
-        (run / "README.md").write_text("---\nlicense: [\n---\n")
-    elif fault == "damaged":
-        file = run / "weights_2.safetensors"
-        file.write_bytes(file.read_bytes()[:-4] + b"\1\2\3\4")
-    elif fault == "pickle":
-        torch.save({"a": torch.zeros(1)}, run / "weights.safetensors")
-    else:
-        for file in run.glob("weights*"):
-            file.unlink()
-    with pytest.raises(InputError) as caught:
-        push_to_hub(run, "me/poses")
-    assert "\n" not in str(caught.value)
-    assert hub.asked == []
-
-
 def test_what_the_hub_refuses_is_one_line(hub: type[Hub], run: Path):
     with pytest.raises(InputError, match="403 Forbidden"):
         push_to_hub(run, "other/poses")

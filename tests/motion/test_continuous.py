@@ -86,11 +86,6 @@ def test_no_joint_jumps_whatever_follows_whatever():
     assert_smooth(range(5))
 
 
-@pytest.mark.slow  # the same with fewer seeds: test_no_joint_jumps_whatever_follows_whatever
-def test_no_joint_jumps_whatever_follows_whatever_of_many_seeds():
-    assert_smooth(range(5, 120))
-
-
 def test_a_part_goes_on_from_where_the_last_one_ends():
     parts = carried_out(continuous())
     for before, after in pairwise(parts):
@@ -111,25 +106,6 @@ def test_who_sits_stands_up_before_walking_and_stays_seated_otherwise():
     assert [step.lower for step in parts[2].motion.plan.steps[:2]] == ["sit", "stand_up"]
 
 
-def test_who_sat_and_walked_away_in_one_sentence_is_on_the_feet():
-    parts = carried_out(
-        continuous(sofa_room()), ("a person sits down, then stands up and walks to the left", "waves", "sits down")
-    )
-    pelvis_m = [
-        part.pose.joints_m[part.pose.time_s > part.first_frame * PERIOD_S, joint("pelvis"), 2] for part in parts
-    ]
-    assert pelvis_m[1].min() > pelvis_m[0].max() - 0.15, "waves on the feet"
-    assert pelvis_m[2][-1] < pelvis_m[1].min() - 0.2
-    assert {step.lower for step in parts[1].motion.plan.steps} == {"stand"}
-    assert "walk" in [step.lower for step in parts[2].motion.plan.steps], "back to the sofa: there is no seat here"
-
-
-def test_the_body_is_one_person_throughout():
-    parts = carried_out(continuous(seed=5), ("a child walks to the left", "a tall man waves", ""))
-    assert len({(part.pose.subject, part.pose.height_m, part.pose.girth) for part in parts}) == 1
-    assert parts[0].pose.height_m < 1.6
-
-
 def test_the_same_seed_gives_the_same_motion_and_another_seed_another():
     one, same, other = (carried_out(continuous(seed=seed), SENTENCES[:2]) for seed in (1, 1, 2))
     for a, b in zip(one, same, strict=True):
@@ -146,7 +122,7 @@ def test_waiting_goes_on_with_an_activity_that_has_no_end_and_holds_the_posture_
 
 
 def test_a_sentence_without_room_leaves_the_motion_as_it_was():
-    motion = continuous()
+    motion = continuous(missing="refuse")
     first = motion.act(parse("a person waves"))
     with pytest.raises(InputError):
         motion.act(parse("goes to the door"))

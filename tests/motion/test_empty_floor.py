@@ -20,10 +20,6 @@ def test_a_sentence_without_a_photo():
         act_out("a person photosynthesises", duration_s=2.0)
 
 
-def test_what_a_sentence_goes_to_and_is_not_there_is_told():
-    assert any("no door" in sentence for sentence in act_out("walks to the door", duration_s=3.0).assumptions)
-
-
 def test_walking_turning_and_walking_on_is_one_gait():
     """No joint is thrown about where a turn meets a walk: at most what a walk has."""
     for seed in range(6):
@@ -47,17 +43,6 @@ def _way_m(motion: Motion, step: Step) -> Float[np.ndarray, "2"]:
     return motion.pose.joints_m[end, 0, :2] - motion.pose.joints_m[start, 0, :2]
 
 
-@pytest.mark.parametrize("turn", ["turns around", "turns 360 degrees"])
-def test_who_turns_slowly_turns_slowly(turn: str):
-    def fastest_mps(how: str) -> float:
-        pelvis_to_hips_m = np.diff(act_out(f"a person {turn} {how}", seed=0).pose.joints_m[:, 1:3], axis=1)[:, 0]
-        return float(np.linalg.norm(np.diff(pelvis_to_hips_m, axis=0), axis=-1).max() * 120)
-
-    slowly, usual, quickly = (fastest_mps(how) for how in ("slowly", "", "quickly"))
-    assert slowly < 0.8 * usual
-    assert usual < 0.95 * quickly
-
-
 @pytest.mark.parametrize("text", ["paces back and forth", "walks to and fro slowly", "runs back and forth"])
 def test_who_paces_comes_back(text: str):
     for seed in range(3):
@@ -65,18 +50,3 @@ def test_who_paces_comes_back(text: str):
         way_m = float(np.linalg.norm(np.diff(pelvis_m, axis=0), axis=-1).sum())
         farthest_m = float(np.linalg.norm(pelvis_m - pelvis_m[0], axis=-1).max())
         assert way_m > 1.5 * farthest_m
-
-
-def test_jumping_up_and_down_leaves_the_floor_twice_in_the_least_time():
-    pelvis_height_m = act_out("a person is jumping up and down", duration_s=2.45, seed=6).pose.joints_m[:, 0, 2]
-    is_up = pelvis_height_m > pelvis_height_m[0] + 0.08
-    assert np.count_nonzero(np.diff(is_up.astype(int)) == 1) >= 2
-
-
-def test_crawling_to_and_fro_leads_there_and_back():
-    made = act_out("a person steps back, then crawls back and forth, then stands", seed=1)
-    crawl = next(step for step in made.plan.steps if step.lower == "crawl")
-    begin, end = (int(at_s / made.plan.duration_s * len(made.pose.joints_m)) for at_s in (crawl.start_s, crawl.end_s))
-    way_m = np.linalg.norm(made.pose.joints_m[begin:end, 0, :2] - made.pose.joints_m[begin, 0, :2], axis=1)
-    assert way_m.max() > 0.5
-    assert way_m[-1] < 0.5 * way_m.max()

@@ -38,13 +38,6 @@ def test_a_model_of_any_module_is_loaded_by_name(tmp_path: Path, monkeypatch: py
     assert heading_of((), clip) is None
 
 
-def test_a_module_in_the_current_folder_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    (tmp_path / "model_of_this_folder.py").write_text("def move(task): ...\n", encoding="utf-8")
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "path", [folder for folder in sys.path if folder not in ("", str(tmp_path))])
-    assert callable(load_motion_model("model_of_this_folder:move"))
-
-
 def test_the_way_of_a_model_s_motion_begins_as_the_path_whatever_the_body_faces():
     path = ((0.0, 3.0), (0.5, 2.0))
     for at, goes in ((path, True), ((path[0], path[0]), False)):

@@ -55,17 +55,6 @@ def test_the_old_walk_slowly_and_it_is_said():
     assert act_out("a person walks", seed=3).person.described == ""
 
 
-def test_running_is_running_where_there_is_room():
-    pelvis = act_out("a person runs to the left", seed=1).pose.joints_m[:, 0, :2]
-    fastest = np.linalg.norm(np.diff(pelvis, axis=0), axis=1).max() * 120
-    assert 2.5 < fastest < 4.0
-
-
-def test_who_is_held_is_not_who_holds():
-    assert described_person("she rocks a baby").age == ""
-    assert described_person("a baby crawls").age == "baby"
-
-
 @pytest.mark.parametrize(
     ("text", "height_m"),
     [
@@ -114,24 +103,3 @@ def test_ages_and_statures_show_and_are_said(words: str, low_m: float, high_m: f
     made = act_out(f"{words} waves", seed=3)
     assert made.clauses[0].status == "done"
     assert any("is taken as" in note for note in made.assumptions)
-
-
-def test_teenagers_are_smaller_than_adults_and_another_is_not_described():
-    adults, teenagers = (np.mean([one.height_m for one in drawn(words, 200)]) for words in ("a person", "a teenager"))
-    assert 0.02 < adults - teenagers < 0.1
-    assert described_person("a person takes a giant step").stature == 0
-    assert described_person("a man waves to a small boy").stature == 0
-
-
-@pytest.mark.parametrize("text", ["waves three times", "claps", "does three squats", "nods twice"])
-def test_the_pace_of_who_is_described_holds_on_the_spot(text: str):
-    child, man, old = (act_out(f"{who} {text}", seed=3).plan for who in ("a child", "a man", "an old man"))
-    assert child.duration_s < man.duration_s < old.duration_s or man.duration_s == 2.0
-    paces = [plan.steps[0].pace for plan in (child, man, old)]
-    assert paces[0] / paces[1] == pytest.approx(1.15)
-    assert paces[2] / paces[1] == pytest.approx(0.75)
-
-
-def test_children_walk_as_fast_as_adults():
-    child, man = (act_out(f"{who} walks to the left", seed=3).plan.steps[0].pace for who in ("a child", "a man"))
-    assert child == pytest.approx(man)

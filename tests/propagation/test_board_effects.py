@@ -7,21 +7,19 @@ import pytest
 import torch
 
 from mmweaver.core.board import Board
-from mmweaver.core.boards import AWR1843, HUPR, typical_board
+from mmweaver.core.boards import AWR1843, HUPR
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
-from mmweaver.core.stages import Stages
-from mmweaver.models.methods import Physics
 from mmweaver.propagation.adc_synthesis import AdcSynthesis
 from mmweaver.propagation.board_effects import BoardEffects
 from mmweaver.propagation.cube_rendering import CubeRenderer
 from mmweaver.propagation.paths import ApparentPoint, Interaction, Paths
 from mmweaver.propagation.ray_traced import Simulator
 from mmweaver.propagation.receiver import IDEAL, Impairments, Receiver
-from mmweaver.propagation.static_paths import Propagation, RayTracedRoom, scattered_paths
+from mmweaver.propagation.static_paths import scattered_paths
 from mmweaver.signal.cube import cube_values, radar_cube
 from tests.propagation.test_cube_rendering import BPM, error_db, sampled
-from tests.rooms import back_wall, floor, scene_of, standing_person
+from tests.rooms import back_wall, floor, scene_of
 
 FEW_LOOPS = replace(AWR1843, name="few", num_loops=2)
 
@@ -160,25 +158,3 @@ def test_the_first_chirp_of_a_frame_differs():
     ratio = (first * later.conj()).sum() / (np.abs(later) ** 2).sum()
     assert ratio == pytest.approx(1.005 * np.exp(2e-3j), abs=1e-5)
     np.testing.assert_array_equal(adc.samples[0, 0, 1], adc.samples[0, 5, 1])
-
-
-def test_a_room_is_traced_once_for_boards_that_differ_by_seed(monkeypatch: pytest.MonkeyPatch):
-    scene, pose = scene_of((back_wall(3.0), floor())), standing_person((0.2, 2.0, -1.2))
-    made: list[RayTracedRoom] = []
-
-    def traced(*args: object, **options: object) -> RayTracedRoom:
-        made.append(RayTracedRoom(*args, **options))  # type: ignore[arg-type]
-        return made[-1]
-
-    monkeypatch.setattr("mmweaver.models.methods.RayTracedRoom", traced)
-    method = Physics(Propagation(bounces=1))
-    for seed in (1, 2):
-        board = typical_board(AWR1843, seed)
-        values = method(
-            scene, (pose,), AWR1843, num_frames=1, seed=seed, keep_adc=False, stages=Stages(), board=board
-        ).cube.values  # fmt: skip
-        alone = Simulator(scene, AWR1843, board=board, propagation=method.propagation).run(
-            pose, num_frames=1, seed=seed
-        )  # fmt: skip
-        np.testing.assert_array_equal(values, radar_cube(alone.adc).values)
-    assert len(made) == 1

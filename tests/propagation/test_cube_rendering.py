@@ -73,13 +73,6 @@ def test_an_amplitude_that_differs_between_segments_leaves_no_spurs(renderer: st
     assert spurs_db(AdcSynthesis(HUPR)) > -60
 
 
-def test_both_orders_of_paths_over_a_wall():
-    """The samples have one delay for both orders of such a path, the cube has two: -29 dB for walls at right angles."""
-    paths = sampled(AWR1843, 0.3, 1 / 3)
-    wanted = cube_values(AdcSynthesis(AWR1843).moving(paths), AWR1843)
-    assert error_db(CubeRenderer(AWR1843).moving(paths), wanted) < -28
-
-
 @pytest.mark.parametrize(
     ("speed_mps", "acceleration_mps2", "bound_db"), [(0.0, 0.0, -60), (0.5, 5.0, -53), (3.0, 30.0, -39)]
 )

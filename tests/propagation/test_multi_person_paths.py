@@ -78,22 +78,3 @@ def test_ghosts_are_hidden_by_others_too(room: Simulator):
 
     assert over_the_wall(alone) > 20
     assert over_the_wall(both) < 0.7 * over_the_wall(alone)
-
-
-def test_what_two_hide_of_the_room_is_hidden_once(room: Simulator):
-    front, behind = person(0.0, 1.4), person(0.0, 2.4, subject=1)
-    joints = [room._joints_at_nodes(pose, np.arange(1)) for pose in (front, behind)]
-    bodies = [body_of(front), body_of(behind)]
-    together = PeoplePaths(room.room, bodies, room.clock, joints)
-    each = [
-        set(np.flatnonzero(PeoplePaths(room.room, [body], room.clock, [own]).occluded(0)))
-        for body, own in zip(bodies, joints, strict=True)
-    ]
-    assert each[0] & each[1]
-    assert set(np.flatnonzero(together.occluded(0))) == each[0] | each[1]
-
-
-def test_the_order_of_the_people_does_not_matter(room: Simulator):
-    people = person(0.0, 1.4), person(0.1, 2.2, subject=1), person(-0.8, 2.6, subject=2)
-    one, other = echo(room, *people), echo(room, *people[::-1])
-    assert energy(one - other) < 1e-6 * energy(one)  # paths over two of them bend over the array at one end alone

@@ -7,7 +7,6 @@ import pytest
 
 from mmweaver.core.ray_caster import RayCaster
 from mmweaver.core.records import Scene
-from mmweaver.core.rotations import pitch_and_roll_rad
 from mmweaver.scene.read_photo import read_photo
 from mmweaver.scene.reconstruction import reconstruct
 
@@ -23,14 +22,6 @@ def _scene(real_data: Path, name: str) -> Scene:
 @pytest.fixture(scope="module", params=ROOMS)
 def scene(real_data: Path, request: pytest.FixtureRequest) -> Scene:
     return _scene(real_data, request.param)
-
-
-def test_it_stands_level_at_a_plausible_height(scene: Scene):
-    assert 0.4 < -scene.floor_z_m < 2.2  # the chair corner was taken from half a metre
-    pitch, roll = np.rad2deg(pitch_and_roll_rad(scene.radar_from_camera))
-    assert -5 < pitch < 35
-    assert abs(roll) < 5
-    assert not any("No floor" in sentence for sentence in scene.assumptions)
 
 
 def test_its_walls_are_upright(scene: Scene):

@@ -10,6 +10,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.io.npz_files import write_points_npz
 from mmweaver.recognition.point_recordings import (
     PointRecording,
+    hole_frames,
     read_task_recording,
     read_task_recordings,
     samples_of,
@@ -47,19 +48,6 @@ def test_points_that_mmweaver_wrote_need_no_columns(tmp_path: Path):
     assert found.cloud.x_m.tolist() == [1, 2, 3]
 
 
-def test_an_empty_room_may_have_no_points(tmp_path: Path):
-    np.savez(tmp_path / "a.npz", frame=np.zeros(0, int), pts=np.zeros((0, 6)), num_frames=30)
-    one = read_task_recording(tmp_path / "a.npz", SETTINGS)
-    assert (one.num_frames, len(windows_of(one, SETTINGS))) == (30, 3)
-
-
-def test_without_points_and_a_number_of_frames_it_lasts_a_window(tmp_path: Path):
-    np.savez(tmp_path / "a.npz", frame=np.zeros(0, int), pts=np.zeros((0, 6)))
-    write_points_npz(tmp_path / "points.npz", recording().cloud)
-    for name in ("a.npz", "points.npz"):
-        assert len(windows_of(read_task_recording(tmp_path / name, SETTINGS), SETTINGS)) == 1
-
-
 def test_a_result_folder_is_a_recording_of_all_its_frames(tmp_path: Path):
     folder = tmp_path / "walk" / "result"
     folder.mkdir(parents=True)
@@ -80,6 +68,28 @@ def test_a_result_folder_is_a_recording_of_all_its_frames(tmp_path: Path):
 def test_where_a_log_counts_again_another_take_begins(tmp_path: Path):
     np.savez(tmp_path / "a.npz", frame=[4, 6, 2, 3, 1], pts=np.zeros((5, 6)))
     assert read_task_recording(tmp_path / "a.npz", SETTINGS).cloud.frame.tolist() == [0, 2, 102, 103, 203]
+
+
+def test_a_hole_in_the_frame_numbers_is_missing_frames_and_no_empty_room(tmp_path: Path):
+    settings = replace(SETTINGS, labels=("nobody", "walk"), empty_label="nobody", gap_frames=20)
+    frame = np.r_[np.arange(100), 2490 + np.arange(100)]
+    np.savez(tmp_path / "a.npz", frame=frame, pts=np.ones((200, 6)))
+    found = read_task_recording(tmp_path / "a.npz", settings)
+    assert (found.num_frames, len(found.missing), found.missing[0], found.missing[-1]) == (2590, 2390, 100, 2489)
+    assert [window.first_frame for window in windows_of(found, settings)] == [
+        *range(0, 100, 10),
+        *range(2490, 2590, 10),
+    ]
+    # a file that names its number of frames has all of them, and those without points are an empty room
+    np.savez(tmp_path / "b.npz", frame=frame, pts=np.ones((200, 6)), num_frames=2590)
+    assert len(windows_of(read_task_recording(tmp_path / "b.npz", settings), settings)) == 259
+
+
+def test_rests_of_some_seconds_are_not_missing():
+    assert len(hole_frames(np.array([0, 3, 30, 31, 80, 81, 82]), 10.0)) == 0
+    assert hole_frames(np.array([0, 3, 30, 140]), 10.0).tolist() == list(range(31, 140))
+    always = np.setdiff1d(np.arange(500), [200, *range(300, 315)])  # points in nearly every frame
+    assert hole_frames(always, 10.0).tolist() == list(range(300, 315))
 
 
 def test_a_longer_gap_begins_a_new_sample():

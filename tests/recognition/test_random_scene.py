@@ -2,10 +2,8 @@
 
 import numpy as np
 
-from mmweaver.core.boards import IWR1443_RADHAR
 from mmweaver.core.seeding import stream
-from mmweaver.propagation.ray_traced import Simulator
-from mmweaver.recognition.random_scene import CHEST_M, Panel, Variation, hung_high, random_scene, sample_variation
+from mmweaver.recognition.random_scene import CHEST_M, Variation, hung_high, sample_variation
 
 
 def test_samples_fill_their_ranges():
@@ -39,20 +37,3 @@ def test_a_share_of_the_radars_hangs_high_and_looks_down():
         assert 0.1 * below_deg < one.tilt_deg < 1.2 * below_deg
     assert all(one in before for one in after if one not in high)
     assert all(hung_high(one, Variation(), stream(0, "mount")) is one for one in before[:3])
-
-
-def test_a_panel_echoes_at_its_range():
-    panel = Panel(centre_m=(1.0, 2.0, 0.0), half_size_m=(0.4, 0.4), turn_rad=0.46, material="metal")
-    bare = Simulator(random_scene(floor_z_m=-1.0, wall_y_m=None), IWR1443_RADHAR)
-    room = Simulator(random_scene(floor_z_m=-1.0, wall_y_m=None, panels=(panel,)), IWR1443_RADHAR)
-    spectra = [np.abs(np.fft.fft(one.room_adc[0, 0] * np.hanning(240))) for one in (bare, room)]
-    at = round(float(np.hypot(1.0, 2.0)) / IWR1443_RADHAR.range_resolution_m)
-    near = slice(at - 4, at + 5)
-    assert spectra[1][near].max() > 3 * spectra[0][near].max()
-
-
-def test_nobody_walks_through_the_wall_and_the_floor_is_at_its_height():
-    scene = random_scene(floor_z_m=-0.8, wall_y_m=3.0)
-    assert scene.free_space.is_free[scene.free_space.y_m < 2.9].all()
-    assert not scene.free_space.is_free[scene.free_space.y_m > 3.0].any()
-    assert scene.floor.centre_m[2] == -0.8

@@ -8,7 +8,7 @@ import pytest
 
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.recording_checks import contradictions
-from tests.recognition.clouds import RADAR, in_all_frames, recording_of, with_others
+from tests.recognition.clouds import RADAR, recording_of, with_others
 
 UNGROUPED = replace(RADAR, max_velocity_mps=1.0, groups_range=False, groups_velocity=False)
 RATE_HZ, FRAMES = 10.0, 100
@@ -72,16 +72,3 @@ def test_neighbours_that_firmware_groups_are_doubted_and_so_is_that_there_are_no
     assert ["in velocity" in line for line in said] == [False, True]
     assert contradictions([alone], grouping) == []
     assert sum("grouped" in line for line in contradictions([alone], UNGROUPED)) == 2
-
-
-def test_something_else_that_moves_asks_for_a_recording_of_the_empty_place():
-    fan = in_all_frames([(2.0, 3.0, 0.24)], FRAMES).cloud
-    with_fan = with_others(walker(), fan)
-    assert any("record the empty place" in line for line in contradictions([with_fan], UNGROUPED))
-    assert not any("empty place" in line for line in contradictions([with_fan], replace(UNGROUPED, knows_place=True)))
-
-
-def test_too_few_points_tell_nothing():
-    few = replace(walker(), cloud=CLOUD.select(np.arange(len(CLOUD.frame)) < 50))
-    assert contradictions([few], UNGROUPED) == []
-    assert contradictions([], UNGROUPED) == []

@@ -1,6 +1,5 @@
 """A recogniser from a task to labels: files, live labels, scores, unlabelled recordings, a recorded background."""
 
-import io
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -13,19 +12,16 @@ pytest.importorskip("sklearn")
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud
 from mmweaver.recognition import train_recogniser as training
-from mmweaver.recognition.background_mask import WindowFilter
-from mmweaver.recognition.live_recogniser import LiveRecogniser, recognise_stream
+from mmweaver.recognition.live_recogniser import LiveRecogniser
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.recogniser import (
     Recogniser,
     Recognition,
     load_recogniser,
-    outside_share,
-    quantiles_of,
     save_recogniser,
 )
-from mmweaver.recognition.scoring import feature_distances, score_recordings
+from mmweaver.recognition.scoring import score_recordings
 from mmweaver.recognition.task_file import read_task
 from mmweaver.recognition.train_recogniser import train_recogniser
 from tests.recognition.clouds import in_all_frames, with_others
@@ -102,19 +98,6 @@ def test_recordings_that_lie_outside_are_warned_of(task_file: Path):
 
 
 @pytest.mark.usefixtures("drawn")
-def test_recordings_that_contradict_the_task_are_told_by_scores_and_training(task_file: Path, tmp_path: Path):
-    model = small_recogniser(task_file)
-    people = drawn_sequences(model.settings, 3, first=50)
-    turned = [replace(one, cloud=replace(one.cloud, x_m=one.cloud.y_m, y_m=one.cloud.x_m)) for one in people]
-    for found, expected in ((people, False), (turned, True)):
-        assert any("behind the radar" in line for line in score_recordings(model, found)["contradictions"]) == expected
-    assert score_recordings(replace(model, points=WindowFilter()), turned)["contradictions"] == []
-    write_recordings(tmp_path / "turned", turned)
-    again = train_recogniser(task_file, tmp_path / "model", OPTIONS, labelled=tmp_path / "turned")
-    assert any("behind the radar" in line for line in again.meta["contradictions"])
-
-
-@pytest.mark.usefixtures("drawn")
 def test_what_moves_in_the_empty_place_is_left_out_of_all_windows(task_file: Path, tmp_path: Path):
     """A fan that the recording of the empty place shows changes no label, live or not."""
     empty = in_all_frames([(1.5, 4.0, speed) for speed in (0.712, -0.712, 1.068)], 200, label="rest", name="empty")
@@ -122,33 +105,12 @@ def test_what_moves_in_the_empty_place_is_left_out_of_all_windows(task_file: Pat
     task_file.write_text(TASK.format(more='background = "place/rest/empty.npz"'))
     model = train_recogniser(task_file, tmp_path / "model", OPTIONS)
     again = load_recogniser(tmp_path / "model")
-    assert len(model.points.busy) == len(again.points.busy) == 9
+    assert len(model.points.background) == len(again.points.background) == 9
     assert again.points.radar == Quantisation.of(read_task(task_file))
     people = drawn_sequences(model.settings, 2, first=50)
     with_fan = [with_others(one, empty.cloud) for one in people]
     assert [again.recognise(one) for one in with_fan] == [again.recognise(one) for one in people]
     assert score_recordings(again, with_fan)["window"]["balanced_accuracy"] == 1.0
-
-
-@pytest.mark.usefixtures("drawn")
-def test_what_moves_all_the_time_is_left_out_by_scores_and_training(task_file: Path, tmp_path: Path):
-    """A fan in all recordings, while people walk elsewhere, changes no score; `unlabelled` teaches it to the model."""
-    model = small_recogniser(task_file)
-    fan = in_all_frames([(1.6, 4.1, 0.712)], 200).cloud
-    people = [
-        replace(one, cloud=replace(one.cloud, y_m=2 + 3 * (one.cloud.y_m - 2)) if one.label != "rest" else one.cloud)
-        for one in drawn_sequences(model.settings, 6, first=50)
-    ]
-    scores = score_recordings(model, [with_others(one, fan) for one in people])
-    (line,) = scores["left_out"]
-    assert "4.1 m ahead and 1.6 m to the right" in line
-    assert scores["window"] == score_recordings(model, people)["window"]
-    assert score_recordings(model, people)["left_out"] == []
-    write_recordings(tmp_path / "some", [with_others(one, fan) for one in people])
-    task_file.write_text(TASK.format(more='unlabelled = "some"'))
-    taught = train_recogniser(task_file, tmp_path / "model", OPTIONS)
-    assert taught.meta["left_out"] == [line]
-    assert len(load_recogniser(tmp_path / "model").points.busy) == 9
 
 
 @pytest.mark.usefixtures("drawn")
@@ -191,18 +153,6 @@ def live_labels(model: Recogniser, recording: PointRecording) -> list[Recognitio
     return [one for points in frames(recording) for one in live.push(points)] + live.finish()
 
 
-@pytest.mark.parametrize("gap_frames", [None, 3])
-def test_live_labels_are_those_of_the_recording(gap_frames: int | None, task_file: Path):
-    model = small_recogniser(task_file)
-    model = replace(model, settings=replace(model.settings, gap_frames=gap_frames))
-    recording = drawn_sequences(model.settings, 1, first=9)[1].part(0, 71)
-    kept = ~np.isin(recording.cloud.frame, [0, 1, 30, 31, 32, 33, 34, 60])  # gaps, and a sample shorter than a window
-    recording = replace(recording, cloud=recording.cloud.select(kept))
-    found = live_labels(model, recording)
-    assert found == model.recognise(recording)
-    assert len(found) >= 2
-
-
 @pytest.mark.usefixtures("drawn")
 @pytest.mark.parametrize("gap_frames", [4, 30])
 def test_gaps_are_windows_of_an_empty_place_where_a_label_is_one(gap_frames: int, task_file: Path):
@@ -223,34 +173,6 @@ def frames(recording: PointRecording) -> list[np.ndarray]:
     cloud = recording.cloud
     table = np.stack([cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps, cloud.snr_db], axis=1)
     return [table[cloud.frame == number] for number in range(recording.num_frames)]
-
-
-def test_a_pipe_of_csv_lines(task_file: Path):
-    model = small_recogniser(task_file)
-    recording = drawn_sequences(model.settings, 1, first=9)[1]
-    rows = ["Frame,X,Y,Z,Doppler"] + [
-        f"{number},{x:.9f},{y:.9f},{z:.9f},{v:.9f}"
-        for number, points in enumerate(frames(recording)) for x, y, z, v, _ in points
-    ]  # fmt: skip
-    found = list(recognise_stream(model, io.BytesIO("\n".join(rows).encode())))
-    assert [one.label for one in found] == [one.label for one in model.recognise(recording)]
-    for text, message in ((b"a,b\n1,2\n", "must name Frame"), (b"Frame,X,Y,Z,Doppler\n1,x,0,0,0\n", "no point")):
-        with pytest.raises(InputError, match=message):
-            list(recognise_stream(model, io.BytesIO(text)))
-    assert list(recognise_stream(model, io.BytesIO(b""))) == []
-
-
-def test_distances_name_the_feature_that_lies_elsewhere():
-    rng = np.random.default_rng(1)
-    made = rng.normal(size=(500, 3)).astype(np.float32)
-    recorded = rng.normal(size=(300, 3)).astype(np.float32) * [3.0, 1.0, 0.0] + [5.0, 0.0, 0.0]
-    recorded[::7, 1], made[:, 2] = np.nan, 0.0
-    far = feature_distances(recorded, quantiles_of(made), ("moved", "same", "constant"))
-    assert far["moved"] > 0.8
-    assert far["same"] < 0.15
-    assert far["constant"] == 0.0
-    assert outside_share(recorded, quantiles_of(made)).mean() > 0.2
-    assert outside_share(made, quantiles_of(made)).mean() < 0.02
 
 
 @pytest.mark.parametrize(

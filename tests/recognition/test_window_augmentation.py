@@ -74,20 +74,6 @@ def test_single_performances_may_lack_their_beginning_or_end_and_what_goes_on_do
     assert len(copy_of(how, once=False).cloud.frame) == 60
 
 
-def test_a_hidden_part_leaves_the_rest():
-    how = replace(AS_IT_WAS, **{"hidden_share": 1.0})
-    counts = [len(copy_of(how, seed).cloud.frame) for seed in range(20)]
-    assert 20 <= min(counts) < 55
-
-
-def test_an_empty_window_stays_empty():
-    nobody = recording_of([], num_frames=20)
-    for once in (False, True):
-        rng = np.random.default_rng(0)
-        copy = varied(nobody, 0, 20, rng, COARSE, PerformanceVariation(), once=once)
-        assert (len(copy.cloud.frame), copy.num_frames) == (0, 20)
-
-
 LONG = 60
 
 
@@ -130,24 +116,3 @@ def test_points_are_dropped_and_added_within_limits():
         counts.append(int((np.abs(cloud.radial_velocity_mps) > 1.5).sum()))
     assert min(counts) < 0.5 * LONG
     assert max(counts) > 0.9 * LONG
-
-
-def test_added_objects_are_static_and_copies_follow_the_stream():
-    objects = WindowAugmentation(most_objects=8, false_points=0.0, least_static=1.0)
-    one, again = (augmented(window(), np.random.default_rng(3), objects).cloud for _ in range(2))
-    assert np.array_equal(one.y_m, again.y_m)
-    far = np.hypot(one.x_m, one.y_m) > 2.6
-    assert far.any()
-    assert (one.radial_velocity_mps[far] == 0).all()
-
-
-def test_a_furnished_room_adds_static_cells_all_around():
-    crowded = replace(NOTHING, crowded_share=1.0, most_crowded=30, reversed_share=0.0, reflected_share=0.0)
-    added = []
-    for seed in range(20):
-        cloud = augmented(window(), np.random.default_rng(seed), crowded).cloud
-        assert (np.abs(cloud.radial_velocity_mps) > 0).sum() == 2 * LONG  # nothing that moves is added
-        assert (np.diff(cloud.frame) >= 0).all()
-        added.append(len(cloud.frame) / LONG - 4)
-    assert min(added) < 3
-    assert max(added) > 15

@@ -1,6 +1,5 @@
 """Recordings read wrongly are noticed, with the likelier reading; right ones are not."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -192,34 +191,6 @@ def test_another_boards_antennas():
     isk = RadarOptions(antennas=ANTENNAS["isk"]).applied(aop)
     as_isk = replace(adc, samples=upright(adc.samples, aop), config=isk)
     assert "--radar-set antennas=aop" in implausible(as_isk, radar_cube(as_isk))[0]
-
-
-@pytest.mark.parametrize(
-    ("convert", "says"),
-    [
-        (lambda words: words.byteswap(), "big-endian"),
-        (lambda words: words.astype("<i4"), "int32"),
-        (lambda words: (words.astype(int) + 32768).astype("<u2"), "uint16"),
-        (lambda words: words[::2].astype(np.complex128), "complex128"),
-        (lambda words: words[::2].astype(np.complex64), "complex64"),
-        (lambda words: np.random.default_rng(0).integers(-900, 900, words.shape, "<i2"), "no other layout"),
-    ],
-    ids=["big-endian", "int32", "uint16", "imaginary part 0", "imaginary part 0, single", "noise"],
-)
-def test_other_numbers(convert: Callable[[np.ndarray], np.ndarray], says: str, recording: Path, tmp_path: Path):
-    whole = np.fromfile(recording / "adc_data.bin", "<i2")
-    data = convert(whole).tobytes()
-    (tmp_path / "adc_data.bin").write_bytes(data[: len(data) // (2 * whole.size // 8) * (2 * whole.size // 8)])
-    found = read(tmp_path / "adc_data.bin")
-    assert len(found) == 1
-    assert says in found[0]
-
-
-def test_strict_names_every_reason(recording: Path, tmp_path: Path):
-    words = np.fromfile(recording / "adc_data.bin", "<i2")
-    np.clip(words, -1100, 1100).tofile(tmp_path / "adc_data.bin")
-    with pytest.raises(InputError, match=r"1100.*--iq-order iq"):
-        read(tmp_path / "adc_data.bin", iq_order="qi", strict=True)
 
 
 def test_a_sub_frame_is_checked_without_the_others(tmp_path: Path):

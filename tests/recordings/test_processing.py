@@ -40,21 +40,6 @@ def test_a_radar_of_real_samples(samples: Path):
     ]
 
 
-def test_the_radar_may_be_named_or_given(samples: Path):
-    named = process_recording(samples, "bgt60", axes="frame,rx,loop,sample")
-    given = process_recording(samples, replace(BGT60, name="mine"), axes="frame,rx,loop,sample")
-    assert np.array_equal(named.cube.values, given.cube.values)
-
-
-def test_a_folder_is_written_once(samples: Path, tmp_path: Path):
-    recording = process_recording(samples, BGT60, axes="frame,rx,loop,sample")
-    meta = recording.save(tmp_path / "out")
-    assert set(meta["files"]) == {file.name for file in (tmp_path / "out").iterdir()}
-    with pytest.raises(InputError, match="--overwrite"):
-        recording.save(tmp_path / "out")
-    recording.save(tmp_path / "out", overwrite=True)
-
-
 def test_a_simulated_capture_folder_round_trips_bit_by_bit(tmp_path: Path):
     """A simulated signal as packets of a DCA1000 with a RealSense, read by `process`."""
     config = radar_of_cfg(tmp_path)

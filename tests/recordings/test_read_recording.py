@@ -93,26 +93,3 @@ def test_a_cube_that_lacks_the_range_is_refused(adc: AdcCube, tmp_path: Path):
     (tmp_path / "cropped" / "radar.json").write_text(cube.config.to_json())
     with pytest.raises(InputError, match=r"0\.00 to 2\.61 m"):
         read_recording(tmp_path / "cropped", range_bins=(0, 15))
-
-
-def test_firmware_settings_are_checked_before_samples_are_read(adc: AdcCube, tmp_path: Path):
-    (tmp_path / "adc_data.bin").write_bytes(b"")
-    with pytest.raises(InputError, match=r"made\.cfg"):  # it sets no CFAR
-        process_recording(tmp_path / "adc_data.bin", tmp_path / "made.cfg", points="firmware")
-
-
-@pytest.mark.parametrize(
-    ("name", "options", "says"),
-    [
-        ("nowhere", {}, "does not exist"),
-        ("adc_data.bin", {}, "--radar"),
-        ("adc.npy", {"radar": "awr1843"}, "--layout"),
-        ("adc.npy", {"layout": "hupr", "axes": "frame,loop"}, "not both"),
-        ("capture", {"iq_order": "iq"}, "--iq-order"),
-        ("empty", {}, r"dca\.pcap.*radar\.npz"),
-    ],
-)
-def test_what_cannot_be_read_is_refused(adc: AdcCube, tmp_path: Path, name: str, options: dict[str, str], says: str):
-    (tmp_path / "empty").mkdir()
-    with pytest.raises(InputError, match=says):
-        read_recording(tmp_path / name, **options)

@@ -58,8 +58,7 @@ class BoxRoom:
         faces = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
         vertices = [[[a, b, c] for a in box[0] for b in box[1] for c in box[2]] for box in boxes]
         return RayCaster(
-            np.array(vertices, float).reshape(-1, 3),
-            np.concatenate([faces + 8 * index for index in range(len(boxes))]),
+            np.array(vertices, float).reshape(-1, 3), np.concatenate([faces + 8 * index for index in range(len(boxes))])
         )
 
 

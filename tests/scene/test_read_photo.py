@@ -140,24 +140,6 @@ def test_what_cannot_be_depth_is_refused(files: Files, values: np.ndarray, messa
     assert message in files.error()
 
 
-def test_an_array_of_objects_is_refused(files: Files):
-    files.set_npy(np.array([{"a": 1}], dtype=object), allow_pickle=True)
-    assert "plain .npy" in files.error()
-
-
-@pytest.mark.parametrize("which", ["rgb", "depth", "camera"])
-def test_missing_folder_and_rubbish(files: Files, which: str):
-    path: Path = getattr(files, which)
-    whole = path.read_bytes()
-    for content in (b"no picture, no json", whole[: len(whole) * 2 // 3]):
-        path.write_bytes(content)
-        assert path.name in files.error()
-    path.unlink()
-    assert "does not exist" in files.error()
-    path.mkdir()
-    assert "is a folder" in files.error()
-
-
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -198,19 +180,6 @@ def test_a_coarse_depth_picture_is_enlarged_by_whole_pixels(files: Files):
     assert photo.intrinsics.cx == pytest.approx(335.5)
     assert "960 x 720" in assumptions[0]
     assert "96 x 72" in assumptions[0]
-
-
-def test_sources_of_classes_exclude_each_other(files: Files, tmp_path: Path):
-    Image.fromarray(np.full((72, 96), 62, np.uint8)).save(tmp_path / "classes.png")
-    photo, _ = read_photo(files.rgb, files.depth, files.camera, classes=tmp_path / "classes.png")
-    assert photo.classes is not None
-    assert (photo.classes.index == photo.classes.names.index("couch")).all()
-    with pytest.raises(InputError, match="leave out segmenter"):
-        read_photo(files.rgb, files.depth, classes=tmp_path / "classes.png", segmenter="any")
-    with pytest.raises(InputError, match="segmenter"):
-        read_photo(files.rgb, files.depth, sam="any")
-    with pytest.raises(InputError, match="--classes"):
-        read_photo(files.rgb, files.depth, classes=tmp_path / "none.png")
 
 
 def _exif(focal_mm: float) -> Image.Exif:

@@ -248,18 +248,3 @@ def test_others_are_refused_in_one_line(tmp_path: Path):
     (tmp_path / "t" / "depth" / "1305031102.160407.png").rename(tmp_path / "t" / "depth" / "1305031109.png")
     with pytest.raises(InputError, match=r"30 ms.*1305031102"):
         read_scan_photo(tmp_path / "t")
-
-
-def test_what_is_not_read_is_refused_with_the_way_on(tmp_path: Path):
-    (tmp_path / "scan.r3d").write_bytes(b"PK")
-    (tmp_path / "EXR_RGBD" / "depth").mkdir(parents=True)
-    (tmp_path / "EXR_RGBD" / "depth" / "0.exr").write_bytes(b"v/1")
-    (tmp_path / "notes.txt").write_text("no scan")
-    for name, way in (
-        ("scan.r3d", "unzip scan.r3d -d scan"),
-        ("EXR_RGBD", "export the .r3d"),
-        ("notes.txt", "ROS bag"),
-    ):
-        for read in (Weaver().read_capture, Weaver().open_room):
-            with pytest.raises(InputError, match=way):
-                read(tmp_path / name)

@@ -100,13 +100,3 @@ def test_single_cells_equal_those_of_the_grid():
     )
     some = response.cells(points, cells) * response.phasor(cells, is_grid=False)
     assert torch.allclose(some, whole[r, d, a], atol=1e-6)
-
-
-def test_it_can_be_differentiated():
-    response = PointResponse(SMALL)
-    axes = response.axes()
-    points = point(response, 1.4, 0.6, direction_of(-0.2, 0.1))
-    place = points.range_bin.clone().requires_grad_()
-    response.render(replace(points, range_bin=place), axes).abs().square().sum().backward()
-    assert place.grad is not None
-    assert torch.isfinite(place.grad).all()

@@ -19,28 +19,6 @@ def test_first_come_first_served():
     assert asyncio.run(ask()) == list(range(20))
 
 
-def test_who_leaves_is_not_served():
-    async def ask() -> list[str]:
-        queue, done, hold = Jobs(1), [], threading.Event()
-        first = asyncio.create_task(queue.run(hold.wait))
-        await asyncio.sleep(0)  # it is in the queue now
-
-        async def has_left() -> bool:
-            return True
-
-        try:
-            with pytest.raises(asyncio.CancelledError):
-                await queue.run(lambda: done.append("gone"), has_left)
-        finally:
-            hold.set()
-        await first
-        await queue.run(lambda: done.append("here"))
-        queue.stop()
-        return done
-
-    assert asyncio.run(ask()) == ["here"]
-
-
 def test_too_many_are_refused(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(server, "MAX_WAITING", 2)
 

@@ -40,16 +40,6 @@ def test_folders_and_files_by_name(tmp_path: Path):
     assert np.isclose(log.points.snr_db, 12.3).all()
 
 
-def test_of_several_files_of_samples_the_first_by_name_is_read(tmp_path: Path):
-    config = captures.radar_of_cfg(tmp_path)
-    for name in ("b.bin", "a.bin", "c.bin"):
-        write_bin(tmp_path / name, captures.counts(config), counts_per_unit=1.0)
-    (tmp_path / "0.dat").write_bytes(out_of_box(1, XYZV))
-    found = read_recorded(tmp_path)
-    assert found is not None
-    assert found.meta["text"] == "a.bin"
-
-
 def test_a_stream_is_one_recording(tmp_path: Path):
     cube = radar_cube(captures.counts(captures.radar_of_cfg(tmp_path)))
     poses = (PoseSequence(time_s=cube.grid.frame_time_s, joints_m=np.zeros((3, 22, 3)), height_m=1.7),)

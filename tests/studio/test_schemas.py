@@ -2,6 +2,7 @@
 
 import re
 import shlex
+from time import process_time
 from typing import Any
 
 import pytest
@@ -63,3 +64,11 @@ def test_the_python_is_python():
 def test_anything_else_is_refused(wrong: Any):
     with pytest.raises(InputError):
         Form.of(wrong)
+
+
+def test_an_endless_path_is_refused_at_once():
+    begun = process_time()
+    for path in ([[0.1, 2.0]] * 1_000_000, "0.1,2.0 " * 1_000_000):
+        with pytest.raises(InputError, match="200"):
+            Form.of({"room": "demo", "text": ["a person walks"], "path": path})
+    assert process_time() - begun < 0.1

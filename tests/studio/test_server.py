@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import io
+import math
 import shlex
 import zipfile
 from collections.abc import Iterator
@@ -12,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 pytest.importorskip("starlette", reason="the studio's extra is not installed")
 pytest.importorskip("httpx", reason="httpx, which starlette's test client needs, is not installed")
@@ -24,11 +26,9 @@ from mmweaver import Weaver
 from mmweaver.cli.main import main
 from mmweaver.core.boards import PRESETS
 from mmweaver.core.errors import NoRoomError
-from mmweaver.io.npz_files import read_npz
 from mmweaver.studio.exports import EXPORTS
 from mmweaver.studio.server import StudioServer
 from mmweaver.studio.service import Service
-from mmweaver.studio.uploads import safe_name
 from mmweaver.viz.body_in_photo import unpack
 
 WALK = {"room": "demo", "text": ["a person walks to the left"], "seed": 1}
@@ -370,9 +370,9 @@ def test_a_room_without_a_place_offers_recovery_options(page: TestClient, monkey
     monkeypatch.setattr(Weaver, "carry_out", none)
     answer = page.post("/api/generate", json=WALK, headers=session(page))
     assert answer.status_code == 422
-    assert answer.json()["ways_on"] == [
-        {"label": f"with {name}", "change": {"radar": name}} for name in ("awr1843", "hupr")
-    ]
+    assert answer.json()["code"] == "no_room"
+    changes = [way["change"] for way in answer.json()["ways_on"]]
+    assert changes == [{"range": [4.0, 6.0]}, *({"radar": name, "range": None} for name in ("awr1843", "hupr"))]
 
 
 @pytest.mark.parametrize(
@@ -391,14 +391,6 @@ def test_hostile_files_leave_one_line_and_the_server_alive(page: TestClient, fil
     assert answer.status_code == 422
     assert 0 < len(answer.json()["error"]) <= 500
     assert generated(page, own)[0]["frames"] == 20
-
-
-def test_names_stay_in_their_folder():
-    assert safe_name("../../etc/passwd", set()) == "passwd"
-    assert safe_name("C:\\temp\\.bashrc", set()) == "bashrc"
-    assert safe_name("..", set()) == "file"
-    assert safe_name("a/rgb.png", {"rgb.png"}).endswith("-rgb.png")
-    assert len(safe_name("x" * 500 + ".png", set())) == 80
 
 
 def test_a_session_takes_what_was_prepared_for_it_along():
@@ -434,11 +426,35 @@ def test_live_waits_for_the_page(page: TestClient):
 def test_the_arrays_of_a_room_are_complete(page: TestClient):
     header, arrays = unpack(page.get("/api/room/demo", headers=session(page)).content)
     assert header["planes"]
-    assert arrays["room_points"].shape == arrays["room_colours"].shape
+    assert len(arrays["room_points"]) == len(arrays["room_uv"]) > arrays["room_faces"].max()
+    assert Image.open(io.BytesIO(arrays["room_photo"].tobytes()), formats=["JPEG"]).size == (640, 480)
 
 
-def test_radar_npz_is_an_archive(page: TestClient, tmp_path: Path):
+@pytest.mark.parametrize("method", ["auto", "physics"])
+def test_rays_of_a_frame_lead_to_the_person(page: TestClient, method: str):
     own = session(page)
-    name = generated(page, own)[0]["result"]
-    (tmp_path / "radar.npz").write_bytes(page.get(f"/api/export/{name}/npz", headers=own).content)
-    assert read_npz(tmp_path / "radar.npz")["cube"].dtype == np.complex64
+    header, arrays = generated(page, own, method=method)
+    _, found = unpack(page.get(f"/api/rays/{header['result']}?frame=4", headers=own).content)
+    kind, level_dbm, length_m, _, azimuth_rad, _ = found["ray_facts"].T
+    assert (np.diff(level_dbm) <= 0).all()
+    pelvis_m = arrays["joints"][0, 4, 0]
+    body = kind == 3
+    assert np.median(np.abs(length_m[body] / 2 - np.linalg.norm(pelvis_m))) < 0.4
+    assert abs(np.median(azimuth_rad[body]) - np.arctan2(pelvis_m[0], pelvis_m[1])) < 0.2
+    corners_m = found["ray_points"][kind == 6]
+    sides_m = np.linalg.norm(np.diff(corners_m, axis=1), axis=-1).sum(axis=1)  # there, over the room, and back
+    np.testing.assert_allclose(sides_m, length_m[kind == 6], rtol=1e-3)
+    assert page.get(f"/api/rays/{header['result']}?frame=99", headers=own).status_code == 422
+
+
+def test_a_landmark_and_a_range_window_belong_to_the_request(page: TestClient):
+    own = session(page)
+    wants_door = {**WALK, "text": ["a person walks to the door"]}
+    answer = page.post("/api/generate", json=wants_door, headers=own)
+    assert answer.json()["code"] == "no_target"
+    assert answer.json()["ways_on"][0]["change"] == {"landmark": "door"}
+    more = {"landmark": ["door=0.6,2.4"], "range": [0.7, 4.5]}
+    header, _ = generated(page, own, **{**wants_door, **more})
+    assert math.dist(header["meta"]["person"]["ends_at_m"], (0.6, 2.4)) < 1.2
+    assert 4.4 < header["range_m"][1] < 4.6
+    assert "--landmark=door=0.6,2.4 --range 0.7,4.5" in header["command"]

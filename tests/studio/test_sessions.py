@@ -68,11 +68,24 @@ def test_a_session_that_never_left_makes_room(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(sessions, "MAX_SESSIONS", 1)
     one = Sessions()
     forgotten = one.open()
-    with pytest.raises(InputError, match="close a tab"):
+    with forgotten.answering(), pytest.raises(InputError, match="try again"):
         one.open()
     forgotten.used_s -= 2 * sessions.UNUSED_S
     assert one.open() is not forgotten
     assert not forgotten.folder.exists()
+    one.end_all()
+
+
+def test_of_the_client_with_the_most_an_unused_session_makes_room(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(sessions, "MAX_SESSIONS", 4)
+    one = Sessions()
+    mine = one.open("honest")
+    used, unused, last = (one.open("greedy") for _ in range(3))
+    with used.answering():
+        pass
+    another = one.open("other")
+    assert not unused.is_open
+    assert all(session.is_open for session in (mine, used, last, another))
     one.end_all()
 
 

@@ -5,15 +5,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from mmweaver.core.boards import PRESETS, find_board
 from mmweaver.core.errors import InputError
-from mmweaver.scene.photo.estimated_depth import EstimatedDepth
-from mmweaver.scene.photo_files import sample_photo
-from mmweaver.studio import uploads
-from mmweaver.studio.service import RecoverableError
 from mmweaver.studio.sessions import Session, Sessions
 from mmweaver.studio.uploads import file_names, place_of, take
 from tests import captures
@@ -72,30 +67,6 @@ def test_paths_are_kept_within_the_folder(tmp_path: Path):
 def test_paths_that_do_not_fit_are_left_out(listed: str | None):
     assert file_names(listed, ["a.png", None]) == ["a.png", "file"]
     assert file_names(json.dumps(["x/a.png", "b"]), ["a.png", None]) == ["x/a.png", "b"]
-
-
-def test_a_photo_alone_offers_a_depth_model(session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    (tmp_path / "IMG_1.webp").write_bytes((SAMPLE / "rgb.webp").read_bytes())
-    monkeypatch.setattr(uploads, "is_installed", lambda _: True)
-    with pytest.raises(RecoverableError, match="a photo alone") as refused:
-        take(session, tmp_path, AWR)
-    (way,) = refused.value.recovery_options
-    photo, _ = sample_photo()
-    depth_m = np.where(np.isfinite(photo.depth_m), photo.depth_m, np.nan)
-    found = EstimatedDepth(depth_m=depth_m, focal_px=photo.intrinsics.fx, model="made")
-    monkeypatch.setattr("mmweaver.scene.read_photo.estimate_depth", lambda *_, **__: found)
-    room = uploads.room_with_estimated_depth(session, way["change"]["estimate"])
-    assert room["kind"] == "room"
-    with pytest.raises(InputError, match="no longer kept"):
-        uploads.room_with_estimated_depth(session, "another")
-
-
-def test_without_the_package_it_says_what_to_install(session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    (tmp_path / "IMG_1.webp").write_bytes((SAMPLE / "rgb.webp").read_bytes())
-    monkeypatch.setattr(uploads, "is_installed", lambda _: False)
-    with pytest.raises(RecoverableError, match=r"mmweaver\[pretrained\]") as refused:
-        take(session, tmp_path, AWR)
-    assert refused.value.recovery_options == []
 
 
 def test_a_radar_alone_is_a_radar(session: Session, tmp_path: Path):

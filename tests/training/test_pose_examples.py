@@ -6,7 +6,7 @@ import pytest
 from mmweaver.core.skeleton import joint
 from mmweaver.models.point_frames import MAX_POINTS, middle_m, near, point_frames
 from mmweaver.recognition.train_pose import posed_frames
-from mmweaver.training.pose_training import Disturbance, PoseWindows, disturbed
+from mmweaver.training.pose_training import Disturbance, disturbed
 from tests.training.moving_arm import moving_arm
 
 STILL = Disturbance(
@@ -48,11 +48,3 @@ def test_the_wall_is_no_part_of_the_person():
     middle = middle_m(frames)
     assert middle[1] == pytest.approx(2.0, abs=0.3)
     assert near(frames, middle).is_there.sum(axis=1)[:40].tolist() == [22] * 40
-
-
-def test_windows_come_from_anywhere():
-    windows = PoseWindows(recordings=[posed_frames(moving_arm(k)) for k in range(3)], window_frames=8)
-    batch = windows.batch(6, np.random.default_rng(0))
-    assert batch.values.shape == (6, 8, MAX_POINTS, 5)
-    assert batch.joints_m.shape == (6, 8, 22, 3)
-    assert len({float(one) for one in batch.middle_m[:, 0]}) == 6

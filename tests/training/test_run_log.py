@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
 from PIL import Image
 
 from mmweaver.training.trainer import RunLog
@@ -31,12 +30,3 @@ def test_pictures_are_complete_files_named_by_step(tmp_path: Path):
     (file,) = (tmp_path / "pictures").iterdir()
     assert file.name == "step_000250.png"
     assert np.array_equal(np.asarray(Image.open(file)), image)
-
-
-@pytest.mark.parametrize(("done", "expected"), [(0, []), (60, [50]), (150, [50, 100, 150])])
-def test_rows_after_the_checkpoint_are_dropped(tmp_path: Path, done: int, expected: list[int]):
-    log = RunLog(tmp_path, 0)
-    for step in (50, 100, 150):
-        log.row(figures(step))
-    RunLog(tmp_path, done)
-    assert [json.loads(line)["step"] for line in (tmp_path / "log.jsonl").read_text().splitlines()] == expected

@@ -40,12 +40,6 @@ def environment(**more: str) -> dict[str, str]:
     return os.environ | {"PYTHONPATH": os.pathsep.join(roots), "OMP_NUM_THREADS": "1"} | more
 
 
-def launched(*words: str) -> subprocess.CompletedProcess[str]:
-    """Two processes, started and ended by torch's launcher."""
-    command = [sys.executable, "-m", "torch.distributed.run", "--standalone", "--nproc-per-node", "2", str(SCRIPT)]
-    return subprocess.run([*command, *words], env=environment(), capture_output=True, text=True, timeout=120)
-
-
 def two_processes_equal_one(two: Path, one: Path) -> None:
     trainer(one).run()
     both = weights(two)
@@ -75,17 +69,6 @@ def test_two_processes_equal_one_with_the_same_batch(tmp_path: Path):
     two_processes_equal_one(tmp_path / "two", tmp_path / "one")
 
 
-@pytest.mark.slow  # test_resuming.py has a run that goes on where it stopped
-def test_two_processes_equal_one_even_after_a_kill(tmp_path: Path):
-    pytest.importorskip("accelerate")
-    killed = launched(str(tmp_path / "two"), "5")
-    assert killed.returncode != 0
-    assert torch.load(tmp_path / "two" / "checkpoint.pt", weights_only=True)["done"] == 4
-    done = launched(str(tmp_path / "two"))
-    assert done.returncode == 0, done.stderr[-2000:]
-    two_processes_equal_one(tmp_path / "two", tmp_path / "one")
-
-
 def test_an_indivisible_batch_is_refused(tmp_path: Path):
     with pytest.raises(InputError, match="multiple"):
         trainer(tmp_path, compute=ComputeDevice(share=(0, 3)))
@@ -104,53 +87,6 @@ def test_non_finite_steps_are_skipped_and_many_end_the_run(tmp_path: Path):
     assert all(torch.isfinite(tensor).all() for tensor in made.learner.state_dict().values())
     with pytest.raises(InputError, match="not finite"):
         trainer(tmp_path / "all", replace(RECIPE, steps=100), train=bad(2, 100)).run()
-
-
-def test_it_stops_early_for_good(tmp_path: Path):
-    recipe = replace(RECIPE, steps=500, learning_rate=0.0, validate_every=1, patience=3)
-    made = trainer(tmp_path, recipe)
-    made.run()
-    assert made.step == 4  # the first is the best, three are no better
-    again = trainer(tmp_path, recipe)
-    again.run()
-    assert again.step == 4
-
-
-def test_rows_of_lost_steps_are_dropped(tmp_path: Path):
-    recipe = replace(RECIPE, validate_every=1)
-    trainer(tmp_path, recipe).run()
-    lines = (tmp_path / "log.jsonl").read_text().splitlines()
-    state = torch.load(tmp_path / "checkpoint.pt", weights_only=True)
-    torch.save(state | {"done": 5}, tmp_path / "checkpoint.pt")
-    with (tmp_path / "log.jsonl").open("a") as log:
-        log.write('{"step": 9, "los')  # a process was killed here
-    trainer(tmp_path, recipe)
-    assert (tmp_path / "log.jsonl").read_text().splitlines() == lines[:5]
-
-
-def test_bf16_trains_as_well(tmp_path: Path):
-    long = replace(RECIPE, steps=200)
-    plain, mixed = (
-        trainer(tmp_path / "a", long),
-        trainer(tmp_path / "b", long, compute=ComputeDevice(precision="bf16")),
-    )
-    plain.run()
-    mixed.run()
-    assert mixed.best.value == pytest.approx(plain.best.value, rel=0.3)
-    assert not torch.equal(plain.learner.state_dict()["offset"], mixed.learner.state_dict()["offset"])
-    with pytest.raises(InputError, match="other settings"):
-        trainer(tmp_path / "b", long)
-
-
-def test_tensorboard_holds_figures_and_pictures(tmp_path: Path):
-    pytest.importorskip("tensorboard")
-    from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
-
-    trainer(tmp_path, tensorboard=True).run()
-    events = EventAccumulator(str(tmp_path / "tensorboard"))
-    events.Reload()
-    assert {"loss", "terms/square", "validation", "learning_rate"} <= set(events.Tags()["scalars"])
-    assert [image.step for image in events.Images("validation")] == [4, 8]
 
 
 def test_unavailable_devices_and_precisions_are_refused():

@@ -1,6 +1,5 @@
 """The animation has a picture a frame, in real time, and its body moves."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -33,10 +32,3 @@ def test_the_body_and_the_maps_move(view: FigureData, tmp_path: Path):
     yellow = [frame[:, :320, 0] - frame[:, :320, 2] > 60 for frame in frames]
     heights = [np.ptp(np.argwhere(mask)[:, 0]) for mask in (yellow[0], yellow[-1])]
     assert heights[1] > heights[0] > 20  # nearer is taller
-
-
-def test_a_recording_of_one_frame(view: FigureData, tmp_path: Path):
-    grid = replace(view.cube.grid, frame_time_s=view.cube.grid.frame_time_s[:1])
-    cube = replace(view.cube, values=view.cube.values[:1], grid=grid)
-    draw_animation(replace(view, cube=cube, aligned=None, poses=(), motions=()), tmp_path / "a.gif")
-    assert len(frames_of(tmp_path / "a.gif")) == 1

@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.core.records import CubeGrid
-from mmweaver.viz.figure_data import MAX_FRAMES, Fan, FigureData
+from mmweaver.viz.figure_data import Fan, FigureData
 from tests.viz.views import BREATHING_M, breathing_view
 
 
@@ -31,19 +30,6 @@ def test_a_fan_is_empty_beyond_its_angles_and_before_its_first_range():
     middle = raster[:, raster.shape[1] // 2]
     assert np.isnan(middle[: len(middle) // 4]).all()
     assert (middle[len(middle) // 2 : -2] == 1.0).all()
-
-
-def test_long_sequences_are_thinned_out(view: FigureData):
-    count = 3 * MAX_FRAMES
-    values = np.repeat(view.cube.values, count // 12, axis=0)
-    cube = replace(view.cube, values=values, grid=CubeGrid.of(view.cube.config, count))
-    long = replace(view, cube=cube)
-    assert len(long.frames) == MAX_FRAMES
-    assert (long.frames[0], long.frames[-1]) == (0, count - 1)
-    assert long.range_doppler.shape == (MAX_FRAMES, 64, 32)
-    assert f"{MAX_FRAMES} of {count} frames" in long.heading
-    assert set(long.shown_points.frame) == set(long.points.frame) & set(long.frames.tolist())
-    assert view.heading == view.title
 
 
 def test_moving_maps_show_the_walker_and_full_maps_the_static_target(view: FigureData):

@@ -2,7 +2,6 @@
 
 import re
 from base64 import b64decode
-from pathlib import Path
 
 import numpy as np
 
@@ -29,9 +28,3 @@ def test_nothing_is_fetched():
     assert page.count("</script>") == 2
     assert "connect-src" not in page  # default-src 'none' forbids every request
     assert "default-src 'none'" in page
-
-
-def test_the_licence_of_what_is_bundled_is_there():
-    assert b"three.js" in page_file("LICENSES.txt")
-    assert b"MIT" in page_file("LICENSES.txt")
-    assert Path(__file__).resolve().parents[2].joinpath("web", "mmweaver.js.map").is_file()

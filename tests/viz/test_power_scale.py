@@ -26,13 +26,6 @@ def test_a_strong_leakage_does_not_hide_the_noise():
     assert (scale.low_db, scale.high_db) == (-5.0, 75.0)
 
 
-@pytest.mark.parametrize("noise", [None, 0.0, 1e-30])
-def test_a_cube_without_noise_shows_60_db(noise: float | None):
-    scale = PowerScale.of(peak=100.0, noise=noise, scale=1.0)
-    assert scale.noise_db is None
-    assert (scale.low_db, scale.high_db) == (-40.0, 20.0)
-
-
 def test_silence_has_a_scale():
     scale = PowerScale.of(peak=0.0, noise=None, scale=float("nan"))
     assert scale.decibels(np.zeros(3)).tolist() == [scale.low_db] * 3

@@ -101,19 +101,6 @@ def test_one_person_and_several():
         parse_request(AWR1843, TEXT, height_m=[1.8, 1.7])
 
 
-def test_a_sentence_is_parsed_once(monkeypatch: pytest.MonkeyPatch):
-    parsed: list[str] = []
-
-    def counting(text: str):
-        parsed.append(text)
-        return plain(text)
-
-    plain = module.parse_sentence
-    monkeypatch.setattr(module, "parse_sentence", counting)
-    parse_request(AWR1843, [TEXT, "a person waves"])
-    assert parsed == [TEXT, "a person waves"]
-
-
 def test_the_sentence_decides_how_long_it_takes():
     assert parse_request(AWR1843, "a person nods").duration_s == pytest.approx(2.0)  # at least
     long = parse_request(AWR1843, ["a person walks, sits down, drinks and stands up", "a person waves"])
@@ -135,12 +122,6 @@ def test_a_path_is_for_somebody_who_walks():
         parse_request(AWR1843, TEXT, path_m=[(0.0, 3.0)])
     with pytest.raises(InputError, match=r"0\.10 m.*0\.35 m"):
         parse_request(AWR1843, TEXT, path_m=[(0.0, 3.0), (0.0, 2.9)])
-
-
-def test_a_path_is_gone_along_once_however_long_it_lasts():
-    plan = parse_request(AWR1843, "a person walks", path_m=[(0.0, 3.0), (0.0, 1.5)], seconds=20.0).people[0].plan
-    assert plan is not None
-    assert len(plan.steps) == 1
 
 
 def test_a_path_is_as_long_as_it_is_and_its_corners_take_time():

@@ -9,9 +9,8 @@ import torch
 from torch import nn
 
 from mmweaver.core.boards import AWR1843
-from mmweaver.core.records import CubeGrid, PointCloud, RadarCube
+from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.models.methods import Physics, Signal
-from mmweaver.signal.points import point_cloud
 from mmweaver.weaver import testing
 from mmweaver.weaver.front_door import Weaver
 from mmweaver.weaver.generation import Room
@@ -57,23 +56,6 @@ def test_radars():
     testing.check_radar(SMALL)
     with pytest.raises(AssertionError, match="'far'"):
         testing.check_radar(replace(SMALL, name="far", first_range_bin=190))
-
-
-def test_detectors():
-    testing.check_detector(lambda cube, adc: point_cloud(cube), radar=SMALL)
-
-    def late(cube: RadarCube, adc: object) -> PointCloud:
-        points = point_cloud(cube)
-        return replace(points, frame=points.frame + 1)
-
-    with pytest.raises(AssertionError, match="0 to 2"):
-        testing.check_detector(late, radar=SMALL)
-
-
-def test_activities():
-    testing.check_activity("bow")
-    with pytest.raises(AssertionError, match="'levitate'"):
-        testing.check_activity("levitate")
 
 
 def test_encoders():

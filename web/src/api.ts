@@ -2,7 +2,7 @@
 import { unpack, type Packed } from "./wire";
 
 export class Refused extends Error {
-  constructor(message: string, readonly waysOn: { label: string; change: Record<string, unknown> }[] = []) { super(message); }
+  constructor(message: string, readonly waysOn: { label: string; change: Record<string, unknown> }[] = [], readonly code = "input") { super(message); }
 }
 
 export class Api {
@@ -37,11 +37,11 @@ export class Api {
     let answer: Response;
     try { answer = await fetch(path, { ...options, headers }); } catch (error) {
       if ((error as Error).name === "AbortError") throw error;
-      throw new Refused("the studio's server does not answer; is `mmweaver studio` still running?");
+      throw new Refused("", [], "offline");
     }
     if (!answer.ok) {
       const said = await answer.json().catch(() => ({}));
-      throw new Refused(said.error ?? `the server answered ${answer.status}`, said.ways_on ?? []);
+      throw new Refused(said.error ?? `the server answered ${answer.status}`, said.ways_on ?? [], said.code);
     }
     return answer;
   }

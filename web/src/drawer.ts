@@ -1,10 +1,26 @@
 // What the drawer says: how to repeat a result, what was assumed, and the numbers of a comparison.
 import { element } from "./dom";
+import { SHORTCUTS, WORDS } from "./strings";
 
 const section = (title: string, ...content: Node[]) => element("section", {}, element("h2", {}, title), ...content);
 const list = (title: string, rows: string[]) => section(title, element("ul", {}, ...rows.map((row) => element("li", {}, row))));
 function code(title: string, text: string): HTMLElement {
-  return section(title, element("pre", { tabindex: 0 }, text), element("button", { "aria-label": `Copy: ${title}`, click: () => navigator.clipboard?.writeText(text) }, "Copy"));
+  const button = element("button", { "aria-label": `${WORDS.copy}: ${title}`, click: async () => { button.textContent = (await copied(text)) ? WORDS.copied : "Select the text and copy it"; setTimeout(() => (button.textContent = WORDS.copy), 2500); } }, WORDS.copy);
+  return section(title, element("pre", { tabindex: 0 }, text), button);
+}
+/** Copies a text, also where the page is not served by HTTPS. */
+async function copied(text: string): Promise<boolean> {
+  try { await navigator.clipboard.writeText(text); return true; } catch { /* not offered to plain HTTP */ }
+  const box = element("textarea", { class: "hidden" });
+  (document.querySelector("dialog[open]") ?? document.body).append(box); // what lies outside an open dialog cannot be selected
+  box.value = text; box.select();
+  const done = document.execCommand("copy");
+  box.remove();
+  return done;
+}
+
+export function shortcuts(): Node[] {
+  return [section(WORDS.shortcuts, element("table", {}, element("tbody", {}, ...SHORTCUTS.map(([keys, what]) => element("tr", {}, element("td", {}, element("kbd", {}, keys)), element("td", {}, what))))))];
 }
 
 /** The details of a result. */

@@ -25,6 +25,7 @@ export function mountPlayer(at: HTMLElement, sequence: ArrayBuffer, room: ArrayB
   at.append(element("p", { class: "status" }, [meta.text ?? "", shown.header.radar].flat().filter(Boolean).join(" · ")), player.root);
   if (room) player.setRoom(new RoomView(unpack(room)));
   player.show(shown);
+  document.addEventListener("keydown", (event) => { if (!(event.target as HTMLElement).closest(".player")) player.key(event); });
   (window as any).player = player;
   return player;
 }

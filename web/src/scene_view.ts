@@ -1,63 +1,18 @@
-// The room in 3D: photo points, surfaces, free floor, people, radar points, the radar's field of view, and floor clicks.
+// The room in 3D: its textured surface, the people, radar points, propagation paths, and the radar with its field of view.
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { Body, LIVING_PALE, PEOPLE } from "./body";
 import { velocityColour } from "./colours";
 import { element, themeColour } from "./dom";
+import { StillPicture } from "./still_picture";
+import { KINDS } from "./strings";
+import { strongest, type Rays } from "./rays";
 import type { RoomView, Sequence } from "./sequence";
 
-const PEOPLE = ["#e8b04a", "#57c26b", "#d678c8", "#6fa8ff", "#e07a5f", "#9d8bf0", "#3fc4ad", "#c9c9c9"];
 const CLICK_PX = 5;
-type Layer = "room" | "planes" | "free" | "points" | "trail";
-
-function dot(): THREE.Texture {
-  const canvas = element("canvas", { width: 32, height: 32 }), g = canvas.getContext("2d")!;
-  g.fillStyle = "#fff"; g.beginPath(); g.arc(16, 16, 15, 0, 7); g.fill();
-  return new THREE.CanvasTexture(canvas);
-}
-
-function shade(): THREE.Texture {
-  const canvas = element("canvas", { width: 64, height: 64 }), g = canvas.getContext("2d")!;
-  const blur = g.createRadialGradient(32, 32, 2, 32, 32, 31);
-  blur.addColorStop(0, "rgba(0,0,0,0.55)"); blur.addColorStop(1, "rgba(0,0,0,0)");
-  g.fillStyle = blur; g.fillRect(0, 0, 64, 64);
-  return new THREE.CanvasTexture(canvas);
-}
-
-/** The parts of one person's body: cones between two balls, placed anew in each frame. */
-class Body {
-  readonly group = new THREE.Group();
-  private parts: { start: THREE.Mesh; end: THREE.Mesh; shaft: THREE.Mesh }[] = [];
-  private shadow: THREE.Mesh;
-  constructor(private sequence: Sequence, private person: number, colour: string, private floorZ: number, isPale: boolean) {
-    const material = new THREE.MeshStandardMaterial({ color: colour, roughness: 0.75, transparent: isPale, opacity: isPale ? 0.45 : 1 });
-    const radii = sequence.arrays.radii, count = radii.shape[1];
-    for (let k = 0; k < count; k++) {
-      const [r0, r1] = [radii.data[(person * count + k) * 2], radii.data[(person * count + k) * 2 + 1]];
-      const ball = (r: number) => new THREE.Mesh(new THREE.SphereGeometry(r, 14, 10), material);
-      const part = { start: ball(r0), end: ball(r1), shaft: new THREE.Mesh(new THREE.CylinderGeometry(r1, r0, 1, 14, 1, true), material) };
-      this.parts.push(part); this.group.add(part.start, part.end, part.shaft);
-    }
-    this.shadow = new THREE.Mesh(new THREE.PlaneGeometry(0.9, 0.9), new THREE.MeshBasicMaterial({ map: shade(), transparent: true, depthWrite: false }));
-    this.group.add(this.shadow);
-  }
-  show(frame: number, share: number): void {
-    const { data, shape } = this.sequence.arrays.capsules, [, frames, count] = shape;
-    const next = Math.min(frame + 1, frames - 1), a = new THREE.Vector3(), b = new THREE.Vector3(), along = new THREE.Vector3();
-    const at = (f: number, k: number, c: number) => data[((this.person * frames + f) * count + k) * 6 + c];
-    const mix = (k: number, c: number) => at(frame, k, c) * (1 - share) + at(next, k, c) * share;
-    this.parts.forEach((part, k) => {
-      a.set(mix(k, 0), mix(k, 1), mix(k, 2)); b.set(mix(k, 3), mix(k, 4), mix(k, 5));
-      part.start.position.copy(a); part.end.position.copy(b);
-      along.subVectors(b, a);
-      part.shaft.position.addVectors(a, b).multiplyScalar(0.5);
-      part.shaft.scale.set(1, Math.max(along.length(), 1e-4), 1);
-      part.shaft.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), along.lengthSq() > 1e-12 ? along.normalize() : new THREE.Vector3(0, 1, 0));
-    });
-    const pelvis = this.sequence.joint(this.person, frame, 0);
-    this.shadow.position.set(pelvis[0], pelvis[1], this.floorZ + 0.015);
-  }
-  dispose(): void { this.group.traverse((o) => { if (o instanceof THREE.Mesh) o.geometry.dispose(); }); }
-}
+export const TOP_SPEED_MPS = 1.5; // of the colours of points
+export type Layer = "room" | "planes" | "free" | "points" | "static" | "trail" | "view" | "grid" | "camera" | "rays";
+const STILL: Layer[] = ["room", "planes", "grid", "view", "camera", "free"]; // drawn once for each view
 
 export class SceneView {
   readonly root = element("div", { class: "scene" });
@@ -67,40 +22,55 @@ export class SceneView {
   onNudge: (right: number, ahead: number) => void = () => {};
   onCorner: () => void = () => {};
   drawing = false;
+  draws = 0; // pictures so far, for tests and benchmarks
+  readonly isSoftware: boolean;
   private renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
   private scene = new THREE.Scene();
+  private still = new THREE.Scene();
+  private picture = new StillPicture();
   private camera = new THREE.PerspectiveCamera(50, 1, 0.05, 80);
   private orbit: OrbitControls;
   private layers: Record<string, THREE.Object3D> = {};
   private bodies: Body[] = [];
   private otherBodies: Body[] = []; // of B, pale
+  private detections = [new Detections(true), new Detections(false)];
   private sequence: Sequence | null = null;
   private other: Sequence | null = null;
   private floorZ = -1;
   private ghost: THREE.Mesh;
   private drawn: [number, number][] = [];
-  private hidden = new Set<Layer>(["planes"]);
+  private hidden = new Set<Layer>(["planes", "free", "static", "camera"]);
   private pending = false;
 
   constructor() {
-    const canvas = this.renderer.domElement;
+    const canvas = this.renderer.domElement, g = this.renderer.getContext(), info = g.getExtension("WEBGL_debug_renderer_info");
+    this.isSoftware = /swiftshader|llvmpipe|software/i.test(String(info ? g.getParameter(info.UNMASKED_RENDERER_WEBGL) : ""));
     canvas.setAttribute("role", "img"); canvas.setAttribute("tabindex", "0");
     canvas.setAttribute("aria-label", "The room in 3D with people and radar points. Click the floor, or press Shift and an arrow key, to choose where the person starts; drag to turn, scroll to zoom.");
     this.root.append(canvas);
     this.camera.up.set(0, 0, 1);
     this.orbit = new OrbitControls(this.camera, canvas);
-    this.orbit.addEventListener("change", () => this.render());
-    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x556070, 1.6));
-    const sun = new THREE.DirectionalLight(0xffffff, 1.8); sun.position.set(-1, -2, 4); this.scene.add(sun);
+    this.orbit.addEventListener("change", () => { this.picture.isOld = true; this.render(); });
+    for (const scene of [this.scene, this.still]) {
+      scene.add(new THREE.HemisphereLight(0xffffff, 0x556070, 1.6));
+      const sun = new THREE.DirectionalLight(0xffffff, 1.8); sun.position.set(-1, -2, 4); scene.add(sun);
+    }
     this.ghost = new THREE.Mesh(new THREE.RingGeometry(0.16, 0.21, 40), new THREE.MeshBasicMaterial({ color: "#00a7d6", side: THREE.DoubleSide }));
-    this.ghost.visible = false; this.scene.add(this.ghost);
+    this.ghost.visible = false;
+    this.scene.add(this.ghost, ...this.detections.map((one) => one.object), this.picture.quad);
     this.home();
+    this.listen(canvas);
+    new ResizeObserver(() => this.resize()).observe(this.root);
+  }
+
+  private listen(canvas: HTMLCanvasElement): void {
     let down: [number, number] | null = null, dragged = false;
     canvas.addEventListener("pointerdown", (event) => {
       down = [event.clientX, event.clientY];
       dragged = !this.drawing && (this.hitsBody(event) || this.hitsRing(event));
       if (this.drawing || dragged) this.orbit.enabled = false;
       if (this.drawing) this.drawn = [];
+      if (dragged) this.reveal("free", true);
     });
     canvas.addEventListener("pointermove", (event) => {
       const place = down && dragged ? this.floorAt(event) : null;
@@ -109,7 +79,7 @@ export class SceneView {
       else if (!event.buttons) { const inside = this.hitsBody(event); canvas.style.cursor = inside || this.hitsRing(event) ? "grab" : ""; this.onBody(inside); }
     });
     canvas.addEventListener("pointerup", (event) => {
-      const start = down; down = null; this.orbit.enabled = true;
+      const start = down; down = null; this.orbit.enabled = true; this.reveal("free", false);
       if (!start) return;
       if (this.drawing && this.drawn.length > 1) { this.onPath(this.drawn); return; }
       if (!dragged && Math.hypot(event.clientX - start[0], event.clientY - start[1]) > CLICK_PX) return;
@@ -119,85 +89,84 @@ export class SceneView {
     canvas.addEventListener("pointerleave", () => this.onBody(false));
     canvas.addEventListener("keydown", (event) => {
       const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
-      if (event.key === "Home") this.home();
-      else if (event.key === "Enter") this.onCorner();
+      if (event.key === "Enter") this.onCorner();
       else if (by && event.shiftKey) this.onNudge(by[0], by[1]);
       else return;
       event.preventDefault(); event.stopPropagation();
     });
-    new ResizeObserver(() => this.resize()).observe(this.root);
   }
 
-  /** The camera's usual place: behind and above the radar, looking into the room. */
+  /** The camera's usual place: behind and above the radar, so that the range window fills the view. */
   home(): void {
-    this.camera.position.set(1.6, -2.6, 1.7); this.orbit.target.set(0, 2.0, -0.5); this.orbit.update();
+    const far = Math.min(this.sequence?.header.range_m[1] ?? 3.5, 12), k = far / 3.5;
+    this.camera.position.set(1.5 * k, -2.2 * k, 1.6 * k); this.orbit.target.set(0.1, 1.9 * k, -0.35); this.orbit.update();
   }
 
-  show(layer: Layer, visible: boolean): void {
-    if (visible) this.hidden.delete(layer); else this.hidden.add(layer);
+  show(layer: Layer, visible: boolean): void { if (visible) this.hidden.delete(layer); else this.hidden.add(layer); this.reveal(layer, false); }
+  isShown(layer: Layer): boolean { return !this.hidden.has(layer); }
+  /** Shows a layer for as long as it is needed, whatever is chosen. */
+  private reveal(layer: Layer, visible: boolean): void {
     const object = this.layers[layer];
-    if (object) object.visible = visible;
-    this.render();
+    if (object) { object.visible = visible || !this.hidden.has(layer); if (STILL.includes(layer)) this.picture.isOld = true; }
+    this.refreshPoints(); this.render();
   }
 
   setRoom(room: RoomView | null): void {
-    for (const name of ["room", "planes", "free"]) this.drop(name);
+    for (const name of ["room", "planes", "free", "camera"]) this.drop(name);
     if (!room) { this.render(); return; }
     this.floorZ = room.header.floor_z_m;
-    const mm = room.arrays.room_points.data, place = new Float32Array(mm.length), colour = new Float32Array(mm.length), rgb = room.arrays.room_colours.data;
-    for (let i = 0; i < mm.length; i++) { place[i] = mm[i] / 1000; colour[i] = (rgb[i] / 255) ** 2.2; }
-    this.put("room", cloud(place, colour, 0.042));
-    const cells = room.arrays.free_floor.data, floor = new Float32Array((cells.length / 2) * 3);
-    for (let i = 0; i < cells.length / 2; i++) floor.set([cells[2 * i], cells[2 * i + 1], this.floorZ + 0.01], 3 * i);
-    const free = cloud(floor, null, 0.03); (free.material as THREE.PointsMaterial).color.set("#2fbf7b"); (free.material as THREE.PointsMaterial).transparent = true; (free.material as THREE.PointsMaterial).opacity = 0.35;
-    this.put("free", free);
+    this.put("room", surface(room, () => { this.picture.isOld = true; this.render(); }));
+    this.put("free", freeFloor(room));
     const planes = new THREE.Group();
     for (const plane of room.header.planes) {
       const c = plane.corners_m.flat(), shape = new THREE.BufferGeometry();
       shape.setAttribute("position", new THREE.BufferAttribute(new Float32Array(c), 3)); shape.setIndex([0, 1, 2, 0, 2, 3]); shape.computeVertexNormals();
       const colour = plane.reflects ? "#e4572e" : plane.kind === "floor" ? "#6b7683" : "#4a90c2";
-      planes.add(new THREE.Mesh(shape, new THREE.MeshBasicMaterial({ color: colour, transparent: true, opacity: 0.22, side: THREE.DoubleSide, depthWrite: false })));
-      const edge = new THREE.BufferGeometry(); edge.setAttribute("position", new THREE.BufferAttribute(new Float32Array([...c, ...c.slice(0, 3)]), 3));
-      planes.add(new THREE.Line(edge, new THREE.LineBasicMaterial({ color: colour })));
+      planes.add(new THREE.Mesh(shape, new THREE.MeshBasicMaterial({ color: colour, transparent: true, opacity: 0.22, side: THREE.DoubleSide, depthWrite: false })), line([...c, ...c.slice(0, 3)], colour));
     }
     this.put("planes", planes);
+    if (room.header.camera_corners_m) this.put("camera", frustum(room));
     this.render();
   }
 
-  /** The people and the radar's view of a sequence; those of `other` are pale. */
-  setSequence(sequence: Sequence, other: Sequence | null = null): void {
+  /** The people and the radar's view of a sequence; those of `other` are pale. None of either empties the room. */
+  setSequence(sequence: Sequence | null, other: Sequence | null = null): void {
+    const goesOn = sequence && this.sequence && !other && sequence.version > 1 && sequence.people === this.bodies.length;
+    if (goesOn) { this.sequence = sequence; this.bodies.forEach((body) => body.follow(sequence)); this.detections[0].set(sequence); this.setTrail(); return; }
+    const window = (one: Sequence | null) => JSON.stringify(one && [one.header.range_m, one.header.azimuth_rad]), isNew = window(this.sequence) !== window(sequence), isFirst = this.sequence === null;
     this.sequence = sequence; this.other = other;
     for (const body of [...this.bodies, ...this.otherBodies]) { this.scene.remove(body.group); body.dispose(); }
-    const bodiesOf = (one: Sequence, isPale: boolean) => Array.from({ length: one.people }, (_, p) => new Body(one, p, PEOPLE[(p + (isPale ? 3 : 0)) % PEOPLE.length], this.floorZ, isPale));
-    this.bodies = bodiesOf(sequence, false); this.otherBodies = other ? bodiesOf(other, true) : [];
+    const bodiesOf = (one: Sequence | null, shift: number) => Array.from({ length: one?.people ?? 0 }, (_, p) => new Body(one!, p, PEOPLE[(p + shift) % PEOPLE.length], this.floorZ, shift > 0));
+    this.bodies = bodiesOf(sequence, 0); this.otherBodies = bodiesOf(other, LIVING_PALE);
     for (const body of [...this.bodies, ...this.otherBodies]) this.scene.add(body.group);
+    this.detections[0].set(sequence); this.detections[1].set(other);
+    this.setTrail(); this.showRays(null, null);
+    if (sequence) { this.put("view", fieldOfView(sequence, this.floorZ)); this.put("grid", rings(sequence, this.floorZ)); } else { this.drop("view"); this.drop("grid"); }
+    if (isNew && (isFirst || sequence)) this.home();
+    this.render();
+  }
+  private setTrail(): void {
     const trail = new THREE.Group();
-    for (const [one, shift] of other ? ([[sequence, 0], [other, 3]] as const) : ([[sequence, 0]] as const))
-      for (let p = 0; p < one.people; p++) {
-        const path = new Float32Array(one.frames * 3);
-        for (let f = 0; f < one.frames; f++) { const [x, y] = one.joint(p, f, 0); path.set([x, y, this.floorZ + 0.03], 3 * f); }
+    for (const [one, shift] of [[this.sequence, 0], [this.other, LIVING_PALE]] as const)
+      for (let p = 0; p < (one?.people ?? 0); p++) {
+        const path: number[] = [];
+        for (let f = 0; f < one!.frames; f++) { const [x, y] = one!.joint(p, f, 0); path.push(x, y, this.floorZ + 0.03); }
         trail.add(line(path, PEOPLE[(p + shift) % PEOPLE.length]));
       }
     this.put("trail", trail);
-    const [near, far] = sequence.header.range_m, [left, right] = sequence.header.azimuth_rad, view = new THREE.Group();
-    const arcOf = (r: number) => arcPoints(r, left, right, this.floorZ + 0.02);
-    for (const r of [Math.max(near, 0), far]) view.add(line(arcOf(r), "#00a7d6"));
-    for (const t of [left, right]) view.add(line(new Float32Array([Math.max(near, 0) * Math.sin(t), Math.max(near, 0) * Math.cos(t), this.floorZ + 0.02, far * Math.sin(t), far * Math.cos(t), this.floorZ + 0.02]), "#00a7d6"));
-    const radar = new THREE.Mesh(new THREE.BoxGeometry(0.1, 0.03, 0.1), new THREE.MeshStandardMaterial({ color: "#c22" })); view.add(radar);
-    this.put("view", view);
   }
 
   /** Frame `frame`, `share` of the way to the next, and the same of B, whose points are squares. */
   showFrame(frame: number, share: number, frameB = 0, shareB = 0): void {
-    if (!this.sequence) return;
     for (const body of this.bodies) body.show(frame, share);
     for (const body of this.otherBodies) body.show(frameB, shareB);
-    const points = new THREE.Group();
-    points.add(detections(this.sequence, frame, true));
-    if (this.other) points.add(detections(this.other, frameB, false));
-    this.put("points", points);
-    this.render();
+    this.detections[0].frame = frame; this.detections[1].frame = frameB;
+    this.refreshPoints(); this.render();
   }
+  private refreshPoints(): void { for (const one of this.detections) one.show(!this.hidden.has("points"), !this.hidden.has("static")); }
+  /** Number of radar points drawn, for tests. */
+  get pointsDrawn(): number { return this.detections.reduce((sum, one) => sum + one.count, 0); }
+  get people(): number { return this.bodies.length; }
 
   /** The ring where the person will start; null hides it. */
   showStart(place: [number, number] | null): void {
@@ -206,13 +175,30 @@ export class SceneView {
     this.render();
   }
 
+  /** Propagation paths of a frame as rays, the chosen ones (all without a choice) coloured by kind and as opaque as strong. */
+  showRays(rays: Rays | null, chosen: number[] | null): void {
+    this.drop("rays");
+    if (rays) {
+      const group = new THREE.Group(), top = rays.level[0] ?? 0;
+      for (const i of chosen ?? strongest(rays)) {
+        const opacity = chosen ? 0.95 : Math.max(0.12, 1 - (top - rays.level[i]) / 50), made = line(rays.points[i].flat(), KINDS[rays.kind[i]][1]), material = made.material as THREE.LineBasicMaterial;
+        material.transparent = true; material.opacity = opacity; material.depthTest = false; made.renderOrder = 2;
+        group.add(made);
+      }
+      this.put("rays", group);
+    }
+    this.render();
+  }
+
   /** The arc of a range and the ray of an azimuth, as far as they are given. */
   showCell(rangeM: number | null, azimuthRad: number | null): void {
+    const now = this.layers.cell?.userData;
+    if ((now?.rangeM ?? null) === rangeM && (now?.azimuthRad ?? null) === azimuthRad) return;
     this.drop("cell");
     if (this.sequence && (rangeM !== null || azimuthRad !== null)) {
       const cell = new THREE.Group(), [left, right] = this.sequence.header.azimuth_rad, far = this.sequence.header.range_m[1];
-      if (rangeM !== null) cell.add(line(arcPoints(rangeM, left, right, this.floorZ + 0.05), "#ffffff"), line(arcPoints(rangeM, left, right, 0), "#ffffff"));
-      if (azimuthRad !== null) cell.add(line(new Float32Array([0, 0, 0, far * Math.sin(azimuthRad), far * Math.cos(azimuthRad), 0]), "#ffffff"));
+      if (rangeM !== null) cell.add(line(arc(rangeM, left, right, this.floorZ + 0.05), "#00d0ff"), line(arc(rangeM, left, right, 0), "#00d0ff"));
+      if (azimuthRad !== null) cell.add(line([0, 0, 0, far * Math.sin(azimuthRad), far * Math.cos(azimuthRad), 0], "#00d0ff"));
       cell.userData = { rangeM, azimuthRad };
       this.put("cell", cell);
     }
@@ -221,15 +207,17 @@ export class SceneView {
 
   /** For tests and screen readers: the range of the arc that is drawn, measured on its geometry; null without one. */
   arcRangeM(): number | null {
-    const arc = this.layers.cell?.children[0] as THREE.Line | undefined;
-    if (!arc || this.layers.cell.userData.rangeM === null) return null;
-    const p = arc.geometry.getAttribute("position");
+    const shown = this.layers.cell?.children[0] as THREE.Line | undefined;
+    if (!shown || this.layers.cell.userData.rangeM === null) return null;
+    const p = shown.geometry.getAttribute("position");
     return Math.hypot(p.getX(0), p.getY(0));
   }
+  /** Rays drawn, for tests. */
+  get raysDrawn(): number { return this.layers.rays?.children.length ?? 0; }
 
   /** Where a place of the floor appears, in pixels of the page. */
-  toPage(x: number, y: number): [number, number] {
-    const p = new THREE.Vector3(x, y, this.floorZ).project(this.camera), box = this.renderer.domElement.getBoundingClientRect();
+  toPage(x: number, y: number, z = this.floorZ): [number, number] {
+    const p = new THREE.Vector3(x, y, z).project(this.camera), box = this.renderer.domElement.getBoundingClientRect();
     return [box.left + ((p.x + 1) / 2) * box.width, box.top + ((1 - p.y) / 2) * box.height];
   }
 
@@ -242,10 +230,8 @@ export class SceneView {
     for (let i = 0; i < pixels.length; i += 4) if (Math.abs(pixels[i] - pixels[0]) + Math.abs(pixels[i + 1] - pixels[1]) + Math.abs(pixels[i + 2] - pixels[2]) > 24) painted++;
     return painted / (w * h);
   }
-
-  picture(): string { this.draw(); return this.renderer.domElement.toDataURL("image/png"); }
-
-  dispose(): void { this.renderer.dispose(); this.renderer.forceContextLoss(); }
+  get element(): HTMLCanvasElement { this.draw(); return this.renderer.domElement; }
+  dispose(): void { this.picture.dispose(); this.renderer.dispose(); this.renderer.forceContextLoss(); }
 
   private ray(event: PointerEvent): THREE.Raycaster {
     const box = this.renderer.domElement.getBoundingClientRect(), caster = new THREE.Raycaster();
@@ -256,9 +242,7 @@ export class SceneView {
     const hit = new THREE.Vector3();
     return this.ray(event).ray.intersectPlane(new THREE.Plane(new THREE.Vector3(0, 0, 1), -this.floorZ), hit) ? [hit.x, hit.y] : null;
   }
-  private hitsBody(event: PointerEvent): boolean {
-    return this.bodies.length > 0 && this.ray(event).intersectObjects(this.bodies.map((body) => body.group), true).length > 0;
-  }
+  private hitsBody(event: PointerEvent): boolean { return this.bodies.length > 0 && this.ray(event).intersectObjects(this.bodies.map((body) => body.group), true).length > 0; }
   private hitsRing(event: PointerEvent): boolean {
     const place = this.ghost.visible ? this.floorAt(event) : null;
     return place !== null && Math.hypot(place[0] - this.ghost.position.x, place[1] - this.ghost.position.y) < 0.25;
@@ -269,73 +253,161 @@ export class SceneView {
     this.drawn.push(place);
     this.showPath(this.drawn);
   }
-  /** A line over the floor. */
-  showPath(path: [number, number][]): void {
-    this.put("path", line(new Float32Array(path.flatMap(([x, y]) => [x, y, this.floorZ + 0.05])), "#00a7d6"));
+  /** A line over the floor; null removes it. */
+  showPath(path: [number, number][] | null): void {
+    if (path?.length) this.put("path", line(path.flatMap(([x, y]) => [x, y, this.floorZ + 0.05]), "#00a7d6")); else this.drop("path");
     this.render();
   }
-  clearPath(): void { this.drop("path"); this.render(); }
   private put(name: string, object: THREE.Object3D): void {
     this.drop(name);
     object.visible = !this.hidden.has(name as Layer);
-    this.layers[name] = object; this.scene.add(object);
+    this.layers[name] = object;
+    if (STILL.includes(name as Layer)) { this.still.add(object); this.picture.isOld = true; } else this.scene.add(object);
   }
   private drop(name: string): void {
     const old = this.layers[name];
     if (!old) return;
-    this.scene.remove(old); delete this.layers[name];
-    old.traverse((o: any) => { o.geometry?.dispose(); o.material?.dispose(); });
+    old.removeFromParent(); delete this.layers[name];
+    if (STILL.includes(name as Layer)) this.picture.isOld = true;
+    old.traverse((o: any) => { o.geometry?.dispose(); o.material?.map?.dispose(); o.material?.dispose(); });
   }
   private resize(): void {
     const { clientWidth: w, clientHeight: h } = this.root;
     if (!w || !h) return;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio || 1, 2)); this.renderer.setSize(w, h);
+    this.renderer.setPixelRatio(this.isSoftware ? 1 : Math.min(devicePixelRatio || 1, 2)); this.renderer.setSize(w, h);
     this.camera.aspect = w / h; this.camera.updateProjectionMatrix();
+    this.picture.resize(this.renderer);
     this.draw(); // at once: setting the size has cleared the canvas
   }
-  private render(): void {
+  render(): void {
     if (this.pending) return;
     this.pending = true;
     requestAnimationFrame(() => { this.pending = false; this.draw(); });
   }
   private draw(): void {
-    this.scene.background = new THREE.Color(themeColour(this.root, "--backdrop") || "#14161a");
+    const colour = themeColour(this.root, "--backdrop") || "#14161a";
+    this.picture.draw(this.renderer, this.still, this.camera, colour);
     this.renderer.render(this.scene, this.camera);
+    this.draws++;
+  }
+  themeChanged(): void { this.picture.isOld = true; if (this.sequence) { this.put("grid", rings(this.sequence, this.floorZ)); } this.render(); }
+}
+
+/** The radar points of a sequence in one buffer, of which a frame's are drawn: moving ones, and static ones where wanted. */
+class Detections {
+  readonly object: THREE.Points;
+  frame = 0;
+  count = 0;
+  private sequence: Sequence | null = null;
+  private capacity = 0;
+  constructor(isRound: boolean) {
+    const material = new THREE.PointsMaterial({ size: isRound ? 0.085 : 0.07, vertexColors: true, depthTest: false }); // echoes lie on and in the body that would hide them
+    if (isRound) { material.map = dot(); material.alphaTest = 0.5; }
+    this.object = new THREE.Points(new THREE.BufferGeometry(), material);
+    this.object.frustumCulled = false; this.object.renderOrder = 1;
+  }
+  set(sequence: Sequence | null): void { this.sequence = sequence; }
+  show(withMoving: boolean, withStatic: boolean): void {
+    const { sequence } = this, first = sequence?.pointStart[this.frame] ?? 0, last = sequence?.pointStart[this.frame + 1] ?? 0;
+    if (last - first > this.capacity) {
+      this.capacity = 2 * (last - first);
+      for (const name of ["position", "color"]) this.object.geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(3 * this.capacity), 3).setUsage(THREE.DynamicDrawUsage));
+    }
+    this.count = 0;
+    if (sequence && last > first) {
+      const { data } = sequence.arrays.points, slowest = sequence.slowestMps, place = this.object.geometry.getAttribute("position"), colour = this.object.geometry.getAttribute("color");
+      for (let k = first; k < last; k++) {
+        const v = data[5 * k + 3], isStatic = Math.abs(v) < slowest;
+        if (isStatic ? !withStatic : !withMoving) continue;
+        place.setXYZ(this.count, data[5 * k], data[5 * k + 1], data[5 * k + 2]); colour.setXYZ(this.count++, ...velocityColour(v, TOP_SPEED_MPS));
+      }
+      place.needsUpdate = colour.needsUpdate = true;
+    }
+    this.object.geometry.setDrawRange(0, this.count);
+    this.object.visible = this.count > 0;
   }
 }
 
-const DOT = dot();
-
-function cloud(place: Float32Array, colour: Float32Array | null, size: number): THREE.Points {
-  const shape = new THREE.BufferGeometry();
-  shape.setAttribute("position", new THREE.BufferAttribute(place, 3));
-  if (colour) shape.setAttribute("color", new THREE.BufferAttribute(colour, 3));
-  const points = new THREE.Points(shape, new THREE.PointsMaterial({ size, vertexColors: colour !== null }));
-  points.frustumCulled = false;
-  return points;
+function dot(): THREE.Texture {
+  const canvas = element("canvas", { width: 32, height: 32 }), g = canvas.getContext("2d")!;
+  g.fillStyle = "#fff"; g.beginPath(); g.arc(16, 16, 15, 0, 7); g.fill();
+  return new THREE.CanvasTexture(canvas);
 }
 
-/** The detections of a frame, coloured by radial velocity. */
-function detections(sequence: Sequence, frame: number, isRound: boolean): THREE.Points {
-  const { data } = sequence.arrays.points, frames = sequence.arrays.point_frame.data, place: number[] = [], colour: number[] = [];
-  for (let k = 0; k < frames.length; k++)
-    if (frames[k] === frame) { place.push(data[5 * k], data[5 * k + 1], data[5 * k + 2]); colour.push(...velocityColour(data[5 * k + 3], 1.5)); }
-  const points = cloud(new Float32Array(place), new Float32Array(colour), isRound ? 0.09 : 0.07), material = points.material as THREE.PointsMaterial;
-  if (isRound) { material.map = DOT; material.alphaTest = 0.5; }
-  material.depthTest = false; points.renderOrder = 1; // echoes lie on and in the body that would hide them
-  return points;
+/** The surface that the photo saw, with the photo on it; from behind it is not there, so that nothing hides the room. */
+function surface(room: RoomView, loaded: () => void): THREE.Object3D {
+  const { room_points: mm, room_faces: faces, room_uv: uv, room_photo: photo } = room.arrays, shape = new THREE.BufferGeometry();
+  shape.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(mm.data, (value) => value / 1000), 3));
+  shape.setAttribute("uv", new THREE.BufferAttribute(Float32Array.from(uv.data, (value) => value / 32767), 2));
+  shape.setIndex(new THREE.BufferAttribute(new Uint32Array(faces.data), 1));
+  const material = new THREE.MeshBasicMaterial({ color: "#9aa3ad" });
+  createImageBitmap(new Blob([photo.data as BlobPart], { type: "image/jpeg" })).then((picture) => {
+    const map = new THREE.Texture(picture as any); map.flipY = false; map.colorSpace = THREE.SRGBColorSpace; map.generateMipmaps = false; map.minFilter = THREE.LinearFilter; map.needsUpdate = true;
+    material.map = map; material.color.set("#ffffff"); material.needsUpdate = true; loaded();
+  }, () => {});
+  const mesh = new THREE.Mesh(shape, material);
+  mesh.frustumCulled = false;
+  return mesh;
 }
 
-function line(place: Float32Array, colour: string): THREE.Line {
+function freeFloor(room: RoomView): THREE.Object3D {
+  const cells = room.arrays.free_floor.data, standable = room.arrays.standable.data, half = room.header.cell_m / 2, z = room.header.floor_z_m + 0.012, place: number[] = [];
+  for (let i = 0; i < cells.length; i += 2) {
+    if (!standable[i / 2]) continue;
+    const [x, y] = [cells[i], cells[i + 1]];
+    place.push(x - half, y - half, z, x + half, y - half, z, x + half, y + half, z, x - half, y - half, z, x + half, y + half, z, x - half, y + half, z);
+  }
+  const shape = new THREE.BufferGeometry(); shape.setAttribute("position", new THREE.BufferAttribute(new Float32Array(place), 3));
+  return new THREE.Mesh(shape, new THREE.MeshBasicMaterial({ color: "#2fbf7b", transparent: true, opacity: 0.3, depthWrite: false }));
+}
+
+/** The camera's pyramid of view; the radar stands where the photo was taken from. */
+function frustum(room: RoomView): THREE.Object3D {
+  const group = new THREE.Group(), corners: number[][] = room.header.camera_corners_m, at: number[] = room.header.camera_m;
+  for (const corner of corners) group.add(line([...at, ...corner], "#b07cff"));
+  group.add(line([...corners.flat(), ...corners[0]], "#b07cff"));
+  return group;
+}
+
+/** The board on a stand, and its field of view on the floor. */
+function fieldOfView(sequence: Sequence, floorZ: number): THREE.Object3D {
+  const [near, far] = sequence.header.range_m, [left, right] = sequence.header.azimuth_rad, view = new THREE.Group(), z = floorZ + 0.02, from = Math.max(near, 0), steps = 40, fan: number[] = [];
+  for (let k = 0; k < steps; k++) {
+    const [a, b] = [left + ((right - left) * k) / steps, left + ((right - left) * (k + 1)) / steps], at = (r: number, t: number) => [r * Math.sin(t), r * Math.cos(t), z - 0.005];
+    fan.push(...at(from, a), ...at(far, a), ...at(far, b), ...at(from, a), ...at(far, b), ...at(from, b));
+  }
+  const shape = new THREE.BufferGeometry(); shape.setAttribute("position", new THREE.BufferAttribute(new Float32Array(fan), 3));
+  view.add(new THREE.Mesh(shape, new THREE.MeshBasicMaterial({ color: "#00a7d6", transparent: true, opacity: 0.05, side: THREE.DoubleSide, depthWrite: false })));
+  for (const r of [from, far]) view.add(line(arc(r, left, right, z), "#00a7d6"));
+  for (const t of [left, right]) view.add(line([from * Math.sin(t), from * Math.cos(t), z, far * Math.sin(t), far * Math.cos(t), z], "#00a7d6"));
+  const solid = (shape: THREE.BufferGeometry, colour: string, place: [number, number, number]) => { const mesh = new THREE.Mesh(shape, new THREE.MeshStandardMaterial({ color: colour, roughness: 0.6 })); mesh.position.set(...place); view.add(mesh); };
+  solid(new THREE.BoxGeometry(0.12, 0.02, 0.1), "#b3261e", [0, 0, 0]); solid(new THREE.BoxGeometry(0.035, 0.012, 0.035), "#20242a", [0, 0.014, 0.012]);
+  const stand = new THREE.CylinderGeometry(0.012, 0.02, -floorZ - 0.05, 10); stand.rotateX(Math.PI / 2); solid(stand, "#59616b", [0, 0, (floorZ - 0.05) / 2]);
+  return view;
+}
+
+/** Rings of equal range on the floor with their metres, and the direction of boresight. */
+function rings(sequence: Sequence, floorZ: number): THREE.Object3D {
+  const far = sequence.header.range_m[1], [left, right] = sequence.header.azimuth_rad, step = far > 12 ? 5 : far > 6 ? 2 : 1, group = new THREE.Group();
+  for (let r = step; r < far; r += step) { group.add(line(arc(r, left, right, floorZ + 0.018), "#6f8ea0")); group.add(label(`${r} m`, [r * Math.sin(right), r * Math.cos(right), floorZ + 0.06], far / 30)); }
+  group.add(line([0, 0, floorZ + 0.018, 0, far, floorZ + 0.018], "#6f8ea0"), label(`${far.toFixed(1)} m`, [far * Math.sin(right), far * Math.cos(right), floorZ + 0.06], far / 30));
+  for (const [to, colour] of [[[0.25, 0, 0], "#d64545"], [[0, 0.25, 0], "#3fa34d"], [[0, 0, 0.25], "#3d7be0"]] as const) group.add(line([0, 0, 0, ...to], colour)); // x right, y ahead, z up
+  return group;
+}
+function label(text: string, place: [number, number, number], size: number): THREE.Sprite {
+  const canvas = element("canvas", { width: 128, height: 48 }), g = canvas.getContext("2d")!;
+  g.font = '600 30px system-ui, "DejaVu Sans", sans-serif'; g.textAlign = "center"; g.textBaseline = "middle"; g.lineWidth = 6; g.strokeStyle = "rgba(255,255,255,.85)"; g.strokeText(text, 64, 24); g.fillStyle = "#245"; g.fillText(text, 64, 24);
+  const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: new THREE.CanvasTexture(canvas), depthTest: false, transparent: true }));
+  sprite.position.set(...place); sprite.scale.set(size * 2.6, size, 1);
+  return sprite;
+}
+function line(place: ArrayLike<number>, colour: string): THREE.Line {
   const shape = new THREE.BufferGeometry();
-  shape.setAttribute("position", new THREE.BufferAttribute(place, 3));
+  shape.setAttribute("position", new THREE.BufferAttribute(new Float32Array(place), 3));
   const made = new THREE.Line(shape, new THREE.LineBasicMaterial({ color: colour }));
   made.frustumCulled = false;
   return made;
 }
-
-function arcPoints(r: number, left: number, right: number, z: number): Float32Array {
-  const steps = 48, out = new Float32Array((steps + 1) * 3);
-  for (let k = 0; k <= steps; k++) { const t = left + ((right - left) * k) / steps; out.set([r * Math.sin(t), r * Math.cos(t), z], 3 * k); }
-  return out;
+function arc(r: number, left: number, right: number, z: number): number[] {
+  return Array.from({ length: 49 }, (_, k) => left + ((right - left) * k) / 48).flatMap((t) => [r * Math.sin(t), r * Math.cos(t), z]);
 }

@@ -6,7 +6,15 @@ export interface Scale { low: number; high: number; noise: number; unit: string 
 export class Sequence {
   readonly header: any;
   readonly arrays: Record<string, Tensor>;
-  constructor(packed: Packed) { this.header = packed.header; this.arrays = packed.arrays; }
+  /** First point of each frame, and the number of all: points are in the order of frames. */
+  readonly pointStart: Int32Array;
+  constructor(packed: Packed, readonly version = 0, private windowS = 0) {
+    this.header = packed.header; this.arrays = packed.arrays;
+    this.pointStart = new Int32Array(this.frames + 1);
+    const frames = packed.arrays.point_frame?.data ?? [];
+    for (let i = 0; i < frames.length; i++) this.pointStart[Math.min(frames[i], this.frames - 1) + 1]++;
+    for (let f = 0; f < this.frames; f++) this.pointStart[f + 1] += this.pointStart[f];
+  }
   get frames(): number { return this.header.frames; }
   get periodS(): number { return this.frames > 1 ? (this.header.time_s[this.frames - 1] - this.header.time_s[0]) / (this.frames - 1) : this.header.frame_period_s; }
   get db(): Scale { return this.header.db; }
@@ -16,10 +24,15 @@ export class Sequence {
 
   /** Joint of a person at a frame, in metres. */
   joint(person: number, frame: number, joint: number): [number, number, number] {
-    const { data, shape } = this.arrays.joints, i = ((person * shape[1] + frame) * shape[2] + joint) * 3;
+    const { data, shape, stride } = this.arrays.joints, i = ((person * (stride ?? shape[1]) + frame) * shape[2] + joint) * 3;
     return [data[i], data[i + 1], data[i + 2]];
   }
 
+  /** Half a Doppler bin: what moves more slowly is static. */
+  get slowestMps(): number { const [low, high] = this.header.velocity_mps; return (high - low) / this.arrays.range_doppler.shape[2] / 2; }
+
+  /** How long its time axis is: that of a stream does not grow with it. */
+  get spanS(): number { return Math.max(this.windowS, this.durationS); }
   get durationS(): number { return this.frames * this.periodS; }
 
   /** The frame nearest to a time, the first or last where it lies outside. */
@@ -52,29 +65,61 @@ export function commonScale(a: Sequence, b: Sequence | null): { low: number; hig
   return { low: Math.min(a.db.low + addA, b.db.low + addB), high: Math.max(a.db.high + addA, b.db.high + addB), unit: same ? "dBm" : "dB over noise", addA, addB };
 }
 
-/** Several chunks of a stream as one sequence; frames and points count on, and the latest header holds. */
-export function joined(chunks: Sequence[]): Sequence {
-  const last = chunks[chunks.length - 1], arrays: Record<string, Tensor> = {}, starts: number[] = [];
-  let frames = 0;
-  for (const chunk of chunks) { starts.push(frames); frames += chunk.frames; }
-  for (const name of Object.keys(last.arrays)) {
-    const parts = chunks.map((chunk) => chunk.arrays[name]);
-    if (name === "radii") { arrays[name] = parts[parts.length - 1]; continue; }
-    const perPerson = name === "joints" || name === "capsules", axis = perPerson ? 1 : 0;
-    const shape = [...parts[0].shape]; shape[axis] = parts.reduce((sum, part) => sum + part.shape[axis], 0);
-    const data = new (parts[0].data.constructor as any)(shape.reduce((a, b) => a * b, 1));
-    const people = perPerson ? shape[0] : 1;
-    let at = 0;
-    for (let person = 0; person < people; person++)
-      parts.forEach((part, k) => {
-        const size = part.data.length / people, piece = part.data.subarray(person * size, (person + 1) * size);
-        data.set(piece, at);
-        if (name === "point_frame") for (let i = at; i < at + size; i++) data[i] += starts[k];
-        at += size;
-      });
-    arrays[name] = { data, shape };
+const PER_PERSON = new Set(["joints", "capsules"]), FIXED = new Set(["radii"]);
+
+/** The last seconds of a stream in arrays that are allocated once: a chunk is appended, and what is too old moves out. */
+export class Rolling {
+  version = 0;
+  private frames = 0;
+  private arrays: Record<string, Tensor> = {};
+  private points = 0;
+  private times: number[] = [];
+  constructor(private most: number) {}
+
+  push(chunk: Sequence): Sequence {
+    const keep = Math.min(this.frames, this.most - chunk.frames), gone = this.frames - keep;
+    for (const [name, { data, shape }] of Object.entries(chunk.arrays)) {
+      if (name === "points" || name === "point_frame") continue;
+      if (FIXED.has(name)) { this.arrays[name] = { data, shape }; continue; }
+      const people = PER_PERSON.has(name) ? shape[0] : 1, size = data.length / people / Math.max(chunk.frames, 1);
+      let own = this.arrays[name];
+      if (!own || own.data.length !== people * this.most * size) own = this.arrays[name] = { data: new (data.constructor as any)(people * this.most * size), shape };
+      for (let p = 0; p < people; p++) {
+        const at = p * this.most * size;
+        if (gone) own.data.copyWithin(at, at + gone * size, at + this.frames * size);
+        own.data.set(data.subarray(p * chunk.frames * size, (p + 1) * chunk.frames * size), at + keep * size);
+      }
+    }
+    this.takePoints(chunk, keep, gone);
+    this.times = [...this.times.slice(gone), ...chunk.header.time_s];
+    this.frames = keep + chunk.frames;
+    this.version++;
+    return this.sequence(chunk);
   }
-  return new Sequence({ header: { ...last.header, frames, time_s: chunks.flatMap((chunk) => chunk.header.time_s) }, arrays });
+  private takePoints(chunk: Sequence, keep: number, gone: number): void {
+    const added = chunk.arrays.point_frame.data, old = this.arrays.point_frame?.data;
+    let out = 0;
+    if (old) while (out < this.points && old[out] < gone) out++; // points are in the order of frames
+    const left = this.points - out, count = left + added.length;
+    let frame = old, point = this.arrays.points?.data;
+    if (!frame || frame.length < count) { frame = new Int32Array(2 * count); point = new Float32Array(10 * count); if (old) { frame.set(old.subarray(out, this.points)); point.set(this.arrays.points.data.subarray(5 * out, 5 * this.points)); } }
+    else { frame.copyWithin(0, out, this.points); point!.copyWithin(0, 5 * out, 5 * this.points); }
+    for (let i = 0; i < left; i++) frame[i] -= gone;
+    for (let i = 0; i < added.length; i++) frame[left + i] = added[i] + keep;
+    point!.set(chunk.arrays.points.data, 5 * left);
+    this.points = count;
+    this.arrays.point_frame = { data: frame, shape: [frame.length] }; this.arrays.points = { data: point!, shape: [frame.length, 5] };
+  }
+  private sequence(chunk: Sequence): Sequence {
+    const arrays: Record<string, Tensor> = {};
+    for (const [name, own] of Object.entries(this.arrays)) {
+      const shape = [...(name === "points" || name === "point_frame" ? own.shape : chunk.arrays[name].shape)];
+      if (name === "point_frame" || name === "points") { shape[0] = this.points; arrays[name] = { data: own.data.subarray(0, this.points * (name === "points" ? 5 : 1)), shape }; continue; }
+      if (!FIXED.has(name)) shape[PER_PERSON.has(name) ? 1 : 0] = this.frames;
+      arrays[name] = { data: own.data, shape, stride: PER_PERSON.has(name) ? this.most : undefined };
+    }
+    return new Sequence({ header: { ...chunk.header, frames: this.frames, time_s: this.times }, arrays }, this.version, this.most * chunk.periodS);
+  }
 }
 
 export class RoomView {

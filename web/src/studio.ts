@@ -1,387 +1,330 @@
-// The studio: a sentence, a room and a radar in; the player shows what comes out.
+// The studio: carries out what the state asks for, and shows it. What happens is decided in state.ts.
 import { Api, Refused } from "./api";
-import { details, numbers } from "./drawer";
-import { download, element } from "./dom";
-import { filesOfDrop, filesOfInput, uploadForm, type Dropped } from "./drops";
+import { element } from "./dom";
+import { details, numbers, shortcuts } from "./drawer";
+import { filesOfDrop, uploadForm, type Dropped } from "./drops";
 import { Player } from "./player";
-import { joined, RoomView, Sequence } from "./sequence";
+import { raysOf } from "./rays";
+import { Rolling, RoomView, Sequence } from "./sequence";
+import { remembered } from "./settings";
+import { SidePanel, type Offered } from "./side_panel";
+import { isStale, nobody, reduce, roomKey, start, type Action, type Ask, type Effect, type LiveFacts, type Place, type Problem, type Shown, type State, type Way } from "./state";
+import { inPageWords, PROBLEMS, WAYS, WORDS } from "./strings";
 import { unpack } from "./wire";
+import { exportChoices, saveOf } from "./exports";
 
-const LIVE_CHUNKS = 12; // of the rolling picture
-const HISTORY = "mmweaver.sentences", MAX_HISTORY = 30;
-interface Asked { room: string; text: string[]; radar: string; board?: string; method: string; seed: number; at: [number, number] | null; path: [number, number][] | null; motion: string; recogniser: string }
+const LIVE_FRAMES = 120; // of the rolling picture
+const MAX_HISTORY = 30;
+const EMPTY: Ask = { room: "", people: [nobody()], radar: "", board: "", method: "", seed: 0, motion: "", recogniser: "", range: null, landmarks: [] };
 
 export class Studio {
   readonly root = element("main", { class: "mmweaver studio" });
   readonly player = new Player();
-  ready = false;
-  result: Sequence | null = null;
-  live: any = null;
+  readonly reduce = reduce; // for tests
+  state: State = start(EMPTY);
   lastSeconds = 0;
-  private api = new Api();
-  private text = element("input", { class: "sentence", type: "text", list: "mmweaver-sentences", "aria-label": "What the person does", spellcheck: "false", autocomplete: "off" });
-  private second = element("input", { class: "sentence", type: "text", list: "mmweaver-sentences", "aria-label": "What the second person does", placeholder: "a second person (empty: none)" });
-  private known = element("datalist", { id: "mmweaver-sentences" });
-  private roomChoice = element("select", { "aria-label": "Room" });
-  private radarChoice = element("select", { "aria-label": "Radar" });
-  private boardChoice = element("select", { "aria-label": "Board" });
-  private recogniserChoice = element("select", { "aria-label": "Labels in Live" });
-  private recordingChoice = element("select", { "aria-label": "Recording" });
-  private motionChoice = element("select", { "aria-label": "Motion" });
-  private methodChoice = element("select", { "aria-label": "Method" });
-  private seed = element("input", { class: "seed", type: "number", min: 0, value: 0, "aria-label": "Seed" });
-  private generateButton = element("button", { class: "main" }, "Generate");
-  private liveButton = element("button", { "aria-pressed": "false" }, "Live");
-  private compareButton = element("button", { "aria-pressed": "false", title: "Keep this result as A and compare the next with it" }, "Compare");
-  private numbersButton = element("button", { title: "The numbers of mmweaver compare", hidden: true }, "Numbers");
-  private pathButton = element("button", { "aria-pressed": "false", title: "Then drag over the floor" }, "Draw path");
-  private exportChoice = element("select", { "aria-label": "Export" });
+  readonly api = new Api();
+  private settings = remembered("mmweaver.studio", { theme: "auto", isFolded: false, sentences: [] as string[] });
+  private panel: SidePanel;
+  private title = element("span", { class: "shown-title" });
   private status = element("div", { class: "status", role: "status", "aria-live": "polite" });
-  private drawer = element("dialog", { "aria-label": "Details of this result" });
-  private at: [number, number] | null = null;
-  private path: [number, number][] | null = null;
-  private kept: Sequence | null = null;
+  private problem = element("div", { class: "problem", role: "alert", hidden: true });
+  private compareButton = element("button", { "aria-pressed": "false", title: "Keep this result as A and compare the next with it (C)" }, WORDS.compare);
+  private numbersButton = element("button", { title: "The numbers of mmweaver compare", hidden: true }, WORDS.numbers);
+  private exportChoice = element("select", { "aria-label": "Export" });
+  private foldButton = element("button", { class: "round", "aria-label": WORDS.fold, title: `${WORDS.fold} (P)`, "aria-expanded": "true" }, "☰");
+  private drawer = element("dialog", { "aria-label": "Details" });
+  private sequences = new WeakMap<Shown, Sequence>();
+  private rooms = new Map<string, RoomView>();
+  private drawn: { shown: Shown | null; kept: Shown | null; room: string } = { shown: null, kept: null, room: "" };
   private running: AbortController | null = null;
   private socket: WebSocket | null = null;
+  private rolling = new Rolling(LIVE_FRAMES);
   private waiting: Sequence[] = [];
-  private chunks: Sequence[] = [];
-  private note = "";
-  private corners: [number, number][] = []; // of a path by the keyboard
+  private sentences: string[] = [];
   private settling = 0;
+  private isFirst = true;
 
   constructor() {
-    const named = (label: string, control: HTMLElement) => element("label", {}, label, control);
-    this.root.append(
-      element("div", { class: "top" },
-        element("div", { class: "line" }, element("h1", { class: "brand" }, "mmWeaver"), this.text, this.generateButton, this.liveButton, this.compareButton, this.numbersButton),
-        element("div", { class: "line" }, this.second, named("room", this.roomChoice), named("radar", this.radarChoice), named("board", this.boardChoice), named("motion", this.motionChoice), named("recording", this.recordingChoice), named("labels", this.recogniserChoice), named("method", this.methodChoice), named("seed", this.seed),
-          this.pathButton, element("button", { click: () => this.openDrawer() }, "Details"), this.exportChoice, this.fileButton(), this.themeButton())),
-      this.status, element("div", { class: "body" }, this.player.root), this.known, this.drawer);
-    this.generateButton.addEventListener("click", () => this.generate());
-    for (const box of [this.text, this.second]) box.addEventListener("keydown", (event) => { if (event.key === "Enter") { if (this.socket) this.say(); else this.generate(); } });
-    this.radarChoice.addEventListener("change", () => this.changeRadar());
-    for (const control of [this.boardChoice, this.motionChoice, this.methodChoice, this.seed]) control.addEventListener("change", () => this.generate());
-    this.roomChoice.addEventListener("change", () => this.changeRoom());
-    this.liveButton.addEventListener("click", () => (this.socket ? this.stopLive() : this.startLive()));
-    this.compareButton.addEventListener("click", () => this.toggleCompare());
-    this.numbersButton.addEventListener("click", () => this.openNumbers());
-    this.recordingChoice.addEventListener("change", () => this.openRecording());
-    this.pathButton.addEventListener("click", () => { if (this.corners.length > 1) this.walkAlong(this.corners); else this.setDrawing(!this.player.scene.drawing); });
-    this.exportChoice.addEventListener("change", () => this.exportAs());
-    this.player.scene.onFloor = (place) => this.startAt(place);
-    this.player.scene.onPath = (path) => this.walkAlong(corners(path));
-    this.player.scene.onNudge = (right, ahead) => this.nudge(right, ahead);
-    this.player.scene.onCorner = () => this.addCorner();
+    this.panel = new SidePanel((action) => this.dispatch(action), (files) => void this.upload(files), () => this.toggleDrawing());
+    this.panel.peopleNow = () => this.state.ask.people;
+    const top = element("header", { class: "top" }, this.foldButton, element("h1", { class: "brand" }, WORDS.brand), this.title, this.status, element("span", { class: "spring" }), this.compareButton, this.numbersButton,
+      element("button", { click: () => { const result = this.result; if (result) this.open(details(result.header)); } }, WORDS.details), this.exportChoice,
+      element("button", { class: "round", "aria-label": WORDS.shortcuts, title: `${WORDS.shortcuts} (?)`, click: () => this.open(shortcuts()) }, "?"), element("button", { class: "round", "aria-label": WORDS.theme, title: `${WORDS.theme} (T)`, click: () => this.switchTheme() }, "◐"));
+    this.root.append(top, this.problem, element("div", { class: "body" }, this.panel.root, this.player.root), this.drawer);
+    this.foldButton.addEventListener("click", () => this.fold(!this.settings.value.isFolded));
+    this.compareButton.addEventListener("click", () => this.dispatch({ type: "keep", on: this.state.kept === null }));
+    this.numbersButton.addEventListener("click", () => void this.openNumbers());
+    this.exportChoice.addEventListener("change", () => void this.exportAs());
+    const { scene } = this.player;
+    scene.onFloor = (place) => this.startAt(place);
+    scene.onPath = (path) => this.dispatch({ type: "walk", path: corners(path).map(([x, y]) => [round(x), round(y)]) });
+    scene.onNudge = (right, ahead) => this.nudge(right, ahead);
+    scene.onCorner = () => { const { ask, drawing } = this.state, at = ask.people[0].at; if (drawing && at) this.dispatch({ type: "corner", at }); };
+    this.player.tracer = async (sequence, frame) => raysOf(await this.api.packed(`api/rays/${encodeURIComponent(sequence.header.result)}?frame=${frame}`));
     this.takeDrops();
-    addEventListener("hashchange", () => { if (this.ready && location.hash.slice(1) !== this.state()) this.restore().then(() => this.generate()); });
+    addEventListener("popstate", () => { const ask = this.askOfAddress(); if (ask && this.root.dataset.state === "ready") this.dispatch({ type: "restore", ask }); });
+    document.addEventListener("keydown", (event) => this.key(event));
+    this.fold(this.settings.value.isFolded); this.applyTheme();
   }
+
+  get result(): Sequence | null { return this.state.shown ? this.sequences.get(this.state.shown) ?? null : null; }
+  get live(): LiveFacts | null { return this.state.live; }
 
   async start(): Promise<void> {
     try {
-      const offered = await this.api.open();
-      fill(this.radarChoice, offered.radars); fill(this.methodChoice, offered.methods); fill(this.boardChoice, offered.boards);
-      (this.boardChoice.parentElement as HTMLElement).hidden = offered.boards.length < 2;
-      fill(this.recogniserChoice, [["", "none"], ...offered.recognisers.map((name: string): [string, string] => [name, name])]); (this.recogniserChoice.parentElement as HTMLElement).hidden = !offered.recognisers.length;
-      fill(this.recordingChoice, [["", "none"], ...offered.recordings.map((name: string): [string, string] => [name, name])]); (this.recordingChoice.parentElement as HTMLElement).hidden = !offered.recordings.length;
-      fill(this.motionChoice, [["", "of the sentence"]]); (this.motionChoice.parentElement as HTMLElement).hidden = true; // until one is brought
-      this.pathButton.hidden = !offered.paths; this.liveButton.hidden = !offered.live;
-      fill(this.roomChoice, offered.rooms);
-      this.exportChoice.append(element("option", { value: "" }, "Export…"), ...offered.exports.map(([value, label]: [string, string]) => element("option", { value }, label)));
-      this.offer(offered.sentences);
-      this.text.value = offered.text; this.seed.value = "0";
+      const offered: Offered = await this.api.open();
+      this.panel.fill(offered);
+      this.exportChoice.append(...exportChoices(offered.exports));
+      this.sentences = offered.sentences; this.panel.offerSentences([...this.settings.value.sentences, ...offered.sentences]);
       this.api.socket("api/presence"); // when this closes, the session ends
-      await this.restore();
-      await this.loadRoom();
-      await this.generate();
-      this.ready = true;
-      this.root.dataset.state = "ready";
-    } catch (error) { this.fail(error); }
+      this.state = start({ ...EMPTY, room: offered.rooms[0][0], radar: offered.radars[0][0], board: offered.boards[0]?.[0] ?? "", method: offered.methods[0][0], people: [{ ...nobody(), text: offered.text }] });
+      this.state = start(this.askOfAddress() ?? this.state.ask);
+      this.dispatch({ type: "generate" });
+    } catch (error) { this.fail(error, "other"); }
   }
 
-  /** Asks for the sequence that the controls describe; an earlier question that is still open is dropped. */
-  async generate(): Promise<boolean> {
+  /** The one way in which anything changes. */
+  dispatch(action: Action): void {
+    const [state, effects] = this.reduce(this.state, action);
+    this.state = state;
+    if (action.type !== "room") this.show(); // a room is shown with what came of it
+    for (const effect of effects) this.run(effect);
+  }
+
+  // what is to be done ----------------------------------------------------------------------------------------------
+  private run(effect: Effect): void {
+    if (effect.do === "make") void this.make(effect.job, effect.ask, effect.needsRoom);
+    else if (effect.do === "stream") void this.stream(effect.job, effect.ask, effect.needsRoom);
+    else if (effect.do === "say") { this.socket?.send(JSON.stringify(body(effect.ask))); this.remember(effect.ask); }
+    else if (effect.do === "end-stream") { const { socket } = this; this.socket = null; this.waiting = []; socket?.close(); }
+    else if (effect.do === "open") void this.openRecorded(effect);
+    else if (effect.do === "keep") this.api.json(`api/keep/${encodeURIComponent(effect.id)}`, { method: "POST" }).catch((error) => this.fail(error, "other"));
+    else if (effect.do === "address") { const hash = `#${address(effect.ask)}`; if (hash !== location.hash) history[this.isFirst ? "replaceState" : "pushState"](null, "", hash); this.isFirst = false; }
+  }
+
+  private async make(job: number, ask: Ask, needsRoom: boolean): Promise<void> {
     this.running?.abort();
-    const asked = (this.running = new AbortController()), begun = performance.now();
-    this.tell("generating…");
+    const { signal } = (this.running = new AbortController()), begun = performance.now();
     try {
-      if (this.ready && !this.player.room) await this.loadRoom(); // a recording hid it
-      this.recordingChoice.value = "";
-      const sequence = new Sequence(await this.api.packed("api/generate", this.api.post(this.asked(), asked.signal)));
-      if (asked.signal.aborted) return false;
+      if (needsRoom) await this.loadRoom(ask, signal);
+      const sequence = new Sequence(await this.api.packed("api/generate", this.api.post(body(ask), signal)));
       this.lastSeconds = (performance.now() - begun) / 1000;
-      this.take(sequence);
-      this.remember(this.text.value);
-      const at = sequence.header.meta.person?.starts_at_m ?? sequence.header.meta.people?.[0]?.person?.starts_at_m;
-      if (this.at && at) this.player.scene.showStart([at[0], at[1]]);
-      history.replaceState(null, "", `#${this.state()}`);
-      this.tell(`${(sequence.frames * sequence.periodS).toFixed(1)} s of radar in ${this.lastSeconds.toFixed(2)} s, ${sequence.arrays.point_frame.data.length} points${this.note ? "; " + this.note : ""}`);
-      return true;
-    } catch (error) { if ((error as Error).name !== "AbortError") this.failMaking(error); return false; }
-    finally { if (this.running === asked) this.running = null; this.note = ""; }
+      this.dispatch({ type: "room", job, room: roomKey(ask) });
+      this.dispatch({ type: "made", job, shown: this.shownAs(sequence, "generated", ask, `${(sequence.frames * sequence.periodS).toFixed(1)} s of radar in ${this.lastSeconds.toFixed(2)} s, ${sequence.arrays.point_frame.data.length} points`) });
+      this.remember(ask);
+      if (this.root.dataset.state !== "ready") { this.root.dataset.state = "ready"; if (!matchMedia("(prefers-reduced-motion: reduce)").matches) this.player.play(); }
+    } catch (error) {
+      if ((error as Error).name === "AbortError") return;
+      if (this.rooms.has(roomKey(ask))) this.dispatch({ type: "room", job, room: roomKey(ask) });
+      this.dispatch({ type: "failed", job, problem: problemOf(error, "making") });
+      this.root.dataset.state = "ready";
+    }
   }
-
-  private take(sequence: Sequence): void {
-    this.result = sequence;
-    this.player.root.classList.remove("stale");
-    if (this.kept) this.player.show(this.kept, sequence); else this.player.show(sequence);
-    if (!this.kept) this.player.seek(this.player.frame);
+  private shownAs(sequence: Sequence, of: Shown["of"], ask: Ask | null, facts: string, name = ""): Shown {
+    const shown: Shown = { id: sequence.header.result ?? "", of, ask, name: name || [sequence.header.meta.text ?? ""].flat().join(" | "), radar: sequence.header.radar, facts };
+    this.sequences.set(shown, sequence);
+    return shown;
   }
-
-  private asked(): Asked {
-    const text = [this.text.value, this.second.value].map((one) => one.trim()).filter((one, i) => i === 0 || one);
-    return { room: this.roomChoice.value, text, radar: this.radarChoice.value, board: this.boardChoice.value, method: this.methodChoice.value, seed: Number(this.seed.value), at: this.at, path: this.path, motion: this.motionChoice.value, recogniser: this.recogniserChoice.value };
+  private async loadRoom(ask: Ask, signal?: AbortSignal): Promise<void> {
+    if (this.rooms.has(roomKey(ask))) return;
+    this.rooms.set(roomKey(ask), new RoomView(await this.api.packed(`api/room/${encodeURIComponent(ask.room)}?radar=${encodeURIComponent(ask.radar)}&range=${ask.range ?? ""}`, { signal })));
+    while (this.rooms.size > 4) this.rooms.delete(this.rooms.keys().next().value!);
   }
-  private state(): string {
-    const { room, text, radar, method, seed, at, board, path } = this.asked(), pairs = new URLSearchParams({ room, radar, method, seed: String(seed) });
-    for (const one of text) pairs.append("text", one);
-    if (board) pairs.set("board", board);
-    if (at) pairs.set("at", at.join(","));
-    if (path) pairs.set("path", path.map((p) => p.join(",")).join(" "));
-    return pairs.toString();
-  }
-  private async restore(): Promise<void> {
-    const pairs = new URLSearchParams(location.hash.slice(1)), before = this.roomChoice.value;
-    if (![...pairs].length) return;
-    const choose = (control: HTMLSelectElement, name: string) => { const value = pairs.get(name); if (value && [...control.options].some((one) => one.value === value)) control.value = value; };
-    choose(this.roomChoice, "room"); choose(this.radarChoice, "radar"); choose(this.methodChoice, "method"); choose(this.boardChoice, "board");
-    const texts = pairs.getAll("text"), at = pairs.get("at")?.split(",").map(Number), path = pairs.get("path")?.split(" ").map((p) => p.split(",").map(Number) as [number, number]);
-    if (texts[0]) this.text.value = texts[0];
-    this.second.value = texts[1] ?? "";
-    if (pairs.get("seed")) this.seed.value = pairs.get("seed")!;
-    this.at = at?.length === 2 && at.every(Number.isFinite) ? [at[0], at[1]] : null;
-    this.path = path ?? null;
-    if (this.ready && this.roomChoice.value !== before) await this.loadRoom();
-  }
-
-  private async loadRoom(): Promise<void> {
-    this.tell("reading the room…");
-    this.player.setRoom(new RoomView(await this.api.packed(`api/room/${encodeURIComponent(this.roomChoice.value)}?radar=${encodeURIComponent(this.radarChoice.value)}`)));
-    this.player.scene.showStart(this.at);
-  }
-  private async changeRoom(): Promise<void> {
-    this.at = this.path = null; this.player.scene.clearPath();
-    try { await this.loadRoom(); await this.generate(); } catch (error) { this.failMaking(error); }
-  }
-
-  private async changeRadar(): Promise<void> { // another range window lets people stand elsewhere
-    try { await this.loadRoom(); await this.generate(); } catch (error) { this.failMaking(error); }
-  }
-
-  private startAt(place: [number, number]): void {
-    const free = this.player.room?.nearestStandable(...place);
-    if (!free) { this.fail(new Refused("nobody can stand in this room within the radar's range window; choose another radar or room")); return; }
-    const snaps = free.distance > this.player.room!.header.cell_m * Math.SQRT1_2;
-    const start = snaps ? free.place : place;
-    this.at = [round(start[0]), round(start[1])]; this.path = null; this.player.scene.clearPath();
-    this.note = snaps ? `no one can stand there; the nearest free place is ${this.at[0].toFixed(2)} m right and ${this.at[1].toFixed(2)} m ahead` : `starts ${this.at[0].toFixed(2)} m right and ${this.at[1].toFixed(2)} m ahead`;
-    this.player.scene.showStart(this.at);
-    this.generate();
-  }
-  private setDrawing(on: boolean): void {
-    this.player.scene.drawing = on; this.corners = [];
-    this.pathButton.setAttribute("aria-pressed", String(on)); this.pathButton.textContent = "Draw path";
-    if (on) this.tell("drag over the floor: the person will walk along this path; or move the ring with Shift and the arrow keys, and press Enter at each corner");
-  }
-  private walkAlong(path: [number, number][]): void {
-    this.path = path.map(([x, y]) => [round(x), round(y)]); this.at = null;
-    this.player.scene.showStart(null); this.setDrawing(false);
-    this.generate();
-  }
-  /** By the keyboard: a tenth of a metre at a time; the sequence follows when the keys rest. */
-  private nudge(right: number, ahead: number): void {
-    const meta = this.result?.header.meta, start = this.at ?? meta?.person?.starts_at_m ?? meta?.people?.[0]?.person?.starts_at_m ?? [0, 2];
-    this.at = [round(start[0] + 0.1 * right), round(start[1] + 0.1 * ahead)];
-    this.player.scene.showStart(this.at);
-    clearTimeout(this.settling);
-    if (!this.player.scene.drawing) this.settling = window.setTimeout(() => this.startAt(this.at!), 400);
-  }
-  private addCorner(): void {
-    if (!this.player.scene.drawing || !this.at) return;
-    this.corners.push(this.at);
-    this.player.scene.showPath(this.corners);
-    this.pathButton.textContent = "Walk path";
-    this.tell(`${this.corners.length} corner${this.corners.length > 1 ? "s" : ""}; “Walk path” takes it`);
-  }
-
-  private toggleCompare(): void {
-    if (this.kept) { this.kept = null; if (this.result) this.player.show(this.result); this.tell("one result"); }
-    else if (this.result) { this.kept = this.result; this.tell("kept as A; change the sentence, seed, method, board or room, or open a recording, to make B"); }
-    this.compareButton.setAttribute("aria-pressed", String(this.kept !== null)); this.numbersButton.hidden = this.kept === null;
-    const id = this.kept?.header.result ?? "none"; // the server keeps it as long
-    this.api.json(`api/keep/${encodeURIComponent(id)}`, { method: "POST" }).catch((error) => this.fail(error));
+  private async openRecorded({ job, recording, result, name }: { job: number; recording: string; result: string; name: string }): Promise<void> {
+    try {
+      const sequence = new Sequence(await (recording ? this.api.packed(`api/recording/${encodeURIComponent(recording)}`, { method: "POST" }) : this.api.packed(`api/result/${result}`)));
+      const isHere = Boolean(sequence.header.meta.inputs?.sample) && this.state.room.startsWith("demo ");
+      this.dispatch({ type: "opened", job, shown: this.shownAs(sequence, "recording", null, `${sequence.frames} frames`, name), hasRoom: isHere });
+    } catch (error) { this.dispatch({ type: "failed", job, problem: problemOf(error, "opening") }); }
   }
 
   // live ------------------------------------------------------------------------------------------------------------
-  private startLive(): void {
+  private async stream(job: number, ask: Ask, needsRoom: boolean): Promise<void> {
+    this.running?.abort();
+    this.rolling = new Rolling(LIVE_FRAMES); this.waiting = [];
+    try {
+      if (needsRoom) { await this.loadRoom(ask); this.dispatch({ type: "room", job, room: roomKey(ask) }); this.show(); }
+    } catch (error) { this.dispatch({ type: "failed", job, problem: problemOf(error, "live") }); return; }
+    if (job !== this.state.job) return;
     const socket = (this.socket = this.api.socket("api/live"));
-    this.liveButton.setAttribute("aria-pressed", "true"); this.liveButton.textContent = "Stop";
-    socket.onopen = () => this.say();
+    socket.onopen = () => { socket.send(JSON.stringify(body(ask))); this.remember(ask); };
     socket.onmessage = (event) => {
-      if (event.data instanceof ArrayBuffer) {
-        this.waiting.push(new Sequence(unpack(event.data)));
-        if (this.waiting.length === 1) this.showChunk();
-      } else this.fail(new Refused(JSON.parse(event.data).error));
+      if (typeof event.data === "string") { const told = JSON.parse(event.data); this.dispatch({ type: "failed", job, problem: problemOf(new Refused(told.error, told.ways_on, told.code), "live") }); return; }
+      this.waiting.push(new Sequence(unpack(event.data)));
+      if (this.waiting.length === 1) this.showChunk(job, socket);
     };
-    socket.onclose = () => { if (this.socket === socket) this.stopLive(); };
+    socket.onclose = () => { if (this.socket === socket) { this.socket = null; this.dispatch({ type: "closed", job }); } };
   }
   /** Plays one chunk at the radar's own pace, then takes the next. */
-  private showChunk(): void {
+  private showChunk(job: number, socket: WebSocket): void {
     const chunk = this.waiting[0];
-    if (!chunk || !this.socket) return;
-    this.chunks = [...this.chunks, chunk].slice(-LIVE_CHUNKS);
-    this.live = chunk.header.live;
-    const rolling = joined(this.chunks);
-    this.result = rolling; this.player.show(rolling); this.player.pause();
-    const first = rolling.frames - chunk.frames, begun = performance.now(), lasts = chunk.frames * chunk.periodS * 1000;
-    this.tell(`live: ${this.live.frames} frames, made ${this.live.times_real_time.toFixed(1)} × faster than real time${labelText(this.live.label)}${this.live.refused ? "; " + this.live.refused : ""}`);
+    if (!chunk || this.socket !== socket) return;
+    const sequence = this.rolling.push(chunk), live: LiveFacts = { ...chunk.header.live, ways: nearest(chunk.header.live.refused ?? ""), times: chunk.header.live.times_real_time }, first = sequence.frames - chunk.frames;
+    this.player.pause(); this.player.frame = first;
+    this.dispatch({ type: "chunk", job, live, radar: sequence.header.radar });
+    this.sequences.set(this.state.shown!, sequence); this.show();
+    const begun = performance.now(), lasts = chunk.frames * chunk.periodS * 1000;
+    let at = first;
     const step = () => {
-      if (!this.socket) return;
-      const share = (performance.now() - begun) / lasts;
-      this.player.seek(first + Math.min(Math.floor(share * chunk.frames), chunk.frames - 1));
+      if (this.socket !== socket) return;
+      const share = (performance.now() - begun) / lasts, frame = first + Math.min(Math.floor(share * chunk.frames), chunk.frames - 1);
+      if (frame !== at) { at = frame; this.player.seek(frame); }
       if (share < 1) { requestAnimationFrame(step); return; }
       this.waiting.shift();
-      if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify({ ack: this.live.first_frame }));
-      this.showChunk();
+      if (socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify({ ack: chunk.header.live.first_frame }));
+      this.showChunk(job, socket);
     };
     requestAnimationFrame(step);
   }
-  private say(): void { this.socket?.send(JSON.stringify(this.asked())); this.remember(this.text.value); }
-  private stopLive(): void {
-    const socket = this.socket; this.socket = null; socket?.close();
-    this.waiting = []; this.chunks = [];
-    this.liveButton.setAttribute("aria-pressed", "false"); this.liveButton.textContent = "Live";
-  }
 
-  // out -------------------------------------------------------------------------------------------------------------
-  private async exportAs(): Promise<void> {
-    const kind = this.exportChoice.value, result = this.result?.header.result;
-    this.exportChoice.value = "";
-    if (!kind || !result) return;
-    try {
-      this.tell("exporting…");
-      const { name, content } = await this.api.file(`api/export/${encodeURIComponent(result)}/${encodeURIComponent(kind)}`);
-      download(name, content);
-      this.tell("exported");
-    } catch (error) { this.fail(error); }
+  // what is shown ---------------------------------------------------------------------------------------------------
+  private show(): void {
+    const { state, player, drawn } = this, { shown, kept, phase, live, problem } = state, a = kept && this.sequences.get(kept), b = shown && this.sequences.get(shown);
+    this.panel.update(state);
+    this.root.dataset.busy = String(phase === "making" || phase === "opening" || phase === "starting"); this.root.dataset.phase = phase;
+    if (drawn.room !== state.room) { player.setRoom(this.rooms.get(state.room) ?? null); drawn.room = state.room; drawn.shown = null; }
+    if (!b) { if (!shown) player.clear(); } else if (drawn.shown !== shown || drawn.kept !== kept) { if (a && shown !== kept) player.show(a, b); else player.show(b); }
+    if (b || !shown) { drawn.shown = shown; drawn.kept = kept; }
+    player.root.classList.toggle("stale", problem !== null && problem.of === "making" && isStale(state));
+    const person = state.ask.people[0];
+    player.scene.drawing = state.drawing;
+    player.scene.showStart(person.at); player.scene.showPath(state.drawing ? state.corners : person.path);
+    this.compareButton.setAttribute("aria-pressed", String(kept !== null)); this.numbersButton.hidden = kept === null; this.exportChoice.disabled = !shown?.id;
+    this.title.textContent = shown ? `${shown.name}` : ""; this.title.title = shown?.ask ? `Shown: ${shown.name}; ${this.panel.label("room", shown.ask.room)}, ${shown.radar}, ${this.panel.label("board", shown.ask.board)}, ${this.panel.label("method", shown.ask.method)}, seed ${shown.ask.seed}` : `Shown: ${shown?.name ?? "nothing"}`;
+    this.status.textContent = state.marking ? `click the floor where the ${state.marking} is` : state.drawing ? (state.corners.length ? `${state.corners.length} corner${state.corners.length > 1 ? "s" : ""}; “${WORDS.walkPath}” takes it` : WORDS.drawing) : phase === "making" ? "generating…" : phase === "opening" ? "reading…" : phase === "starting" ? "starting…"
+      : live ? `live: ${live.frames} frames, made ${live.times.toFixed(1)} × faster than real time${labelText(live.label)}` : phase === "live" ? "live: starting…" : [shown?.facts, state.note].filter(Boolean).join("; ");
+    this.showProblem(problem);
   }
+  private showProblem(problem: Problem | null): void {
+    this.problem.hidden = problem === null;
+    if (!problem) { this.problem.replaceChildren(); return; }
+    const reason = inPageWords(problem.reason), own = PROBLEMS[problem.code] ?? PROBLEMS.input;
+    this.problem.dataset.code = problem.code;
+    this.problem.replaceChildren(element("strong", {}, own), element("span", {}, reason ? ` ${reason}` : ""), ...problem.ways.map((way) => element("button", { click: () => this.follow(way) }, WAYS[way.label] ?? way.label)), element("button", { class: "small", "aria-label": WORDS.dismiss, click: () => this.dispatch({ type: "dismiss" }) }, "✕"));
+  }
+  private fail(error: unknown, of: Problem["of"]): void { if (!(error instanceof Refused)) console.error(error); this.dispatch({ type: "problem", problem: problemOf(error, of) }); }
 
-  private openDrawer(): void { if (this.result) this.show(details(this.result.header)); }
-  private async openNumbers(): Promise<void> {
-    const a = this.kept?.header.result, b = this.result?.header.result;
-    if (!a || !b || a === b) { this.tell("make B first: change the sentence, seed, method, board or room, or open a recording"); return; }
-    try {
-      this.tell("comparing…");
-      const found = await this.api.json(`api/compare/${encodeURIComponent(a)}/${encodeURIComponent(b)}`);
-      this.tell("compared");
-      this.show(numbers(found));
-    } catch (error) { this.fail(error); }
+  // what a person does ----------------------------------------------------------------------------------------------
+  follow({ change }: Pick<Way, "change">): void {
+    if (change.estimate) { void this.take(this.api.json(`api/depth/${encodeURIComponent(change.estimate)}`, { method: "POST" })); return; }
+    if (change.landmark) { this.dispatch({ type: "mark", kind: change.landmark }); return; }
+    if (change.text) { this.dispatch({ type: "type", person: 0, text: change.text }); this.dispatch({ type: "go" }); return; }
+    const { at, path, text, estimate: _, landmark: __, ...more } = change, people = more.people ?? this.state.ask.people.map((one, i) => (i ? one : { ...one, ...(at !== undefined ? { at, path: null } : {}), ...(path === null ? { path: null } : {}), ...(text ? { text } : {}) }));
+    const wasLive = this.state.problem?.code === "live_one_person";
+    this.dispatch({ type: "edit", change: { ...more, people } });
+    if (wasLive) this.dispatch({ type: "live" });
   }
-  private show(content: Node[]): void {
-    this.drawer.replaceChildren(element("button", { click: () => this.drawer.close() }, "Close"), ...content);
-    this.drawer.showModal();
+  startAt(place: Place): void {
+    if (this.state.marking) { this.dispatch({ type: "place", at: place.map(round) as Place, note: "" }); return; }
+    const free = this.player.room?.nearestStandable(...place);
+    if (!free) { this.dispatch({ type: "problem", problem: { code: "no_room", reason: "Nobody can stand here within the radar's range; choose another radar or room.", ways: [], of: "other" } }); return; }
+    const snaps = free.distance > this.player.room!.header.cell_m * Math.SQRT1_2, at = (snaps ? free.place : place).map(round) as Place, words = `${at[0].toFixed(2)} m right and ${at[1].toFixed(2)} m ahead`;
+    this.dispatch({ type: "place", at, note: snaps ? `no one can stand there; the nearest free place is ${words}` : `starts ${words}` });
   }
-
-  // in --------------------------------------------------------------------------------------------------------------
-  private fileButton(): HTMLElement {
-    const opener = (label: string, more: Record<string, boolean>) => {
-      const input = element("input", { type: "file", multiple: true, class: "hidden", tabindex: -1, "aria-hidden": "true", ...more });
-      input.addEventListener("change", () => { this.upload(filesOfInput(input)); input.value = ""; });
-      return [input, element("button", { click: () => input.click() }, label)];
-    };
-    return element("span", { class: "line" }, ...opener("Open files", {}), ...opener("Open folder", { webkitdirectory: true }));
-  }
-  private themeButton(): HTMLElement {
-    return element("button", { "aria-label": "Light or dark", click: () => {
-      const dark = this.root.classList.contains("dark") || (!this.root.classList.contains("light") && matchMedia("(prefers-color-scheme: dark)").matches);
-      this.root.classList.toggle("dark", !dark); this.root.classList.toggle("light", dark); this.player.draw();
-    } }, "◐");
-  }
-  private takeDrops(): void {
-    this.root.addEventListener("dragover", (event) => { event.preventDefault(); this.root.classList.add("drop"); });
-    this.root.addEventListener("dragleave", (event) => { if (event.relatedTarget === null) this.root.classList.remove("drop"); });
-    this.root.addEventListener("drop", async (event) => {
-      event.preventDefault(); this.root.classList.remove("drop");
-      this.upload(await filesOfDrop(event.dataTransfer));
-    });
+  private toggleDrawing(): void { const { corners: path, drawing } = this.state; if (path.length > 1) this.dispatch({ type: "walk", path }); else this.dispatch({ type: "draw", on: !drawing }); }
+  /** By the keyboard: a tenth of a metre at a time; the sequence follows when the keys rest. */
+  private nudge(right: number, ahead: number): void {
+    const meta = this.result?.header.meta, [x, y] = this.state.ask.people[0].at ?? meta?.person?.starts_at_m ?? meta?.people?.[0]?.person?.starts_at_m ?? [0, 2], at: Place = [round(x + 0.1 * right), round(y + 0.1 * ahead)];
+    clearTimeout(this.settling);
+    this.state = { ...this.state, ask: { ...this.state.ask, people: this.state.ask.people.map((one, i) => (i ? one : { ...one, at })) } }; this.show();
+    if (!this.state.drawing) this.settling = window.setTimeout(() => this.startAt(at), 400);
   }
   /** Sends files; the server says what they are together: a room, a recording, a motion, or a result. */
   async upload(files: (File | Dropped)[]): Promise<void> {
     const dropped = files.map((one) => (one instanceof File ? { file: one, path: one.name } : one));
     if (!dropped.length) return;
-    this.tell(`reading ${dropped.length} file${dropped.length > 1 ? "s" : ""}…`);
-    try { await this.takeFound(await this.api.json("api/upload", { method: "POST", body: uploadForm(dropped, this.radarChoice.value) })); } catch (error) { this.fail(error); }
+    this.status.textContent = `reading ${dropped.length} file${dropped.length > 1 ? "s" : ""}…`; this.root.dataset.busy = "true";
+    await this.take(this.api.json("api/upload", { method: "POST", body: uploadForm(dropped, this.state.ask.radar) }));
   }
-  private async takeFound(found: any): Promise<void> {
-    const choose = (control: HTMLSelectElement) => { control.append(element("option", { value: found.id }, found.label)); control.value = found.id; (control.parentElement as HTMLElement).hidden = false; };
-    if (found.kind === "room") { choose(this.roomChoice); await this.changeRoom(); }
-    else if (found.kind === "board") { choose(this.boardChoice); await this.generate(); }
-    else if (found.kind === "radar") { choose(this.radarChoice); await this.changeRadar(); }
-    else if (found.kind === "motion") { choose(this.motionChoice); this.path = null; this.player.scene.clearPath(); await this.generate(); }
-    else this.takeRecorded(new Sequence(await this.api.packed(`api/result/${found.id}`)), found.label);
+  private async take(answer: Promise<any>): Promise<void> {
+    try {
+      const found = await answer, kind = found.kind as "room" | "radar" | "board" | "motion" | "result";
+      if (kind === "result") { this.dispatch({ type: "open-result", id: found.id, name: found.label }); return; }
+      this.panel.addChoice(kind, found.id, found.label);
+      this.dispatch({ type: "edit", change: { [kind]: found.id }, note: `${found.label} joined the list` });
+    } catch (error) { this.fail(error, "opening"); }
   }
-  private async openRecording(): Promise<void> {
-    const name = this.recordingChoice.value;
-    if (!name) return;
-    this.tell(`reading ${name}…`);
-    try { this.takeRecorded(new Sequence(await this.api.packed(`api/recording/${encodeURIComponent(name)}`, { method: "POST" })), name); } catch (error) { this.fail(error); }
+  private takeDrops(): void {
+    this.root.dataset.drop = WORDS.drop;
+    this.root.addEventListener("dragover", (event) => { event.preventDefault(); this.root.classList.add("drop"); });
+    this.root.addEventListener("dragleave", (event) => { if (event.relatedTarget === null) this.root.classList.remove("drop"); });
+    this.root.addEventListener("drop", async (event) => { event.preventDefault(); this.root.classList.remove("drop"); await this.upload(await filesOfDrop(event.dataTransfer)); });
   }
-  /** A recording shows no room, unless it is compared with what was made in one, or was made in the bundled one that is shown. */
-  private takeRecorded(sequence: Sequence, label: string): void {
-    const isHere = sequence.header.meta.inputs?.sample && this.roomChoice.value === "demo";
-    if (!isHere && !this.kept) this.player.setRoom(null);
-    this.take(sequence);
-    this.tell(`${label}: ${sequence.frames} frames`);
+  private async exportAs(): Promise<void> {
+    const kind = this.exportChoice.value, id = this.state.shown?.id;
+    this.exportChoice.value = "";
+    if (!kind || !id) return;
+    this.dispatch({ type: "note", text: "exporting…" });
+    try { await saveOf(kind, this.player, (what) => this.api.file(`api/export/${encodeURIComponent(id)}/${encodeURIComponent(what)}`)); this.dispatch({ type: "note", text: "exported" }); } catch (error) { this.fail(error, "other"); }
   }
-
-  // said ------------------------------------------------------------------------------------------------------------
-  private tell(text: string): void { this.root.dataset.busy = String(text.endsWith("…")); this.status.className = "status"; this.status.replaceChildren(text); }
-  /** The sequence that is still shown is not of what was asked: it is dimmed until the next one. */
-  private failMaking(error: unknown): void {
-    if (this.result) this.player.root.classList.add("stale");
-    this.fail(error);
+  private async openNumbers(): Promise<void> {
+    const a = this.state.kept?.id, b = this.state.shown?.id;
+    if (!a || !b || a === b) { this.dispatch({ type: "note", text: "make B first: change the sentence, seed, method, board or room, or open a recording" }); return; }
+    try { this.open(numbers(await this.api.json(`api/compare/${encodeURIComponent(a)}/${encodeURIComponent(b)}`))); } catch (error) { this.fail(error, "other"); }
   }
-  private fail(error: unknown): void {
-    this.root.dataset.busy = "false";
-    this.status.className = "status error";
-    this.status.replaceChildren((error as Error).message);
-    if (!(error instanceof Refused)) { console.error(error); return; }
-    for (const way of error.waysOn) this.status.append(element("button", { click: () => this.follow(way.change) }, way.label));
+  private open(content: Node[]): void { this.drawer.replaceChildren(element("button", { click: () => this.drawer.close() }, WORDS.close), ...content); this.drawer.showModal(); }
+  private fold(isFolded: boolean): void { this.settings.set({ isFolded }); this.root.classList.toggle("folded", isFolded); this.foldButton.setAttribute("aria-expanded", String(!isFolded)); }
+  private applyTheme(): void { for (const theme of ["light", "dark"]) this.root.classList.toggle(theme, this.settings.value.theme === theme); this.player.themeChanged(); }
+  private switchTheme(): void {
+    const { theme } = this.settings.value, isDark = theme === "dark" || (theme === "auto" && matchMedia("(prefers-color-scheme: dark)").matches);
+    this.settings.set({ theme: isDark ? "light" : "dark" }); this.applyTheme();
   }
-  private follow(change: Record<string, unknown>): void {
-    if (typeof change.estimate === "string") { this.estimateDepth(change.estimate); return; }
-    if (Array.isArray(change.at)) { this.at = change.at as [number, number]; this.player.scene.showStart(this.at); }
-    if (change.at === null) { this.at = null; this.player.scene.showStart(null); }
-    if (change.path === null) { this.path = null; this.player.scene.clearPath(); }
-    if (typeof change.radar === "string") { this.radarChoice.value = change.radar; this.changeRadar(); return; }
-    if (typeof change.room === "string") { this.roomChoice.value = change.room; this.changeRoom(); return; }
-    if (typeof change.text === "string") this.text.value = change.text;
-    this.generate();
+  private key(event: KeyboardEvent): void {
+    const target = event.target as HTMLElement;
+    if (this.drawer.open || event.defaultPrevented || target.closest(".player")) return; // the player has its own
+    if (target.matches("textarea, select, input:not([type=checkbox])")) { if (event.key === "Escape") target.blur(); return; }
+    this.act(event);
   }
-  private async estimateDepth(photo: string): Promise<void> {
-    this.tell("estimating the depth…");
-    try { await this.takeFound(await this.api.json(`api/depth/${encodeURIComponent(photo)}`, { method: "POST" })); } catch (error) { this.fail(error); }
+  private act(event: KeyboardEvent): void {
+    const actions: Record<string, () => void> = { "?": () => this.open(shortcuts()), "/": () => { this.fold(false); this.panel.focusSentence(); }, p: () => this.fold(!this.settings.value.isFolded), t: () => this.switchTheme(), c: () => this.compareButton.click() };
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (actions[event.key]) { actions[event.key](); event.preventDefault(); } else this.player.key(event);
   }
-  private offer(sentences: string[]): void {
-    const said = read(HISTORY);
-    this.known.replaceChildren(...[...new Set([...said, ...sentences])].map((one) => element("option", { value: one })));
+  private remember(ask: Ask): void {
+    const said = [ask.people[0].text.trim(), ...this.settings.value.sentences.filter((one) => one !== ask.people[0].text.trim())].filter(Boolean).slice(0, MAX_HISTORY);
+    this.settings.set({ sentences: said }); this.panel.offerSentences([...said, ...this.sentences]);
   }
-  private remember(text: string): void {
-    const said = [text, ...read(HISTORY).filter((one) => one !== text)].slice(0, MAX_HISTORY);
-    try { localStorage.setItem(HISTORY, JSON.stringify(said)); } catch { /* private windows keep no history */ }
+  private askOfAddress(): Ask | null {
+    const pairs = new URLSearchParams(location.hash.slice(1)), { ask } = this.state;
+    if (![...pairs].length) return null;
+    const choice = (key: "room" | "radar" | "method" | "board") => { const value = pairs.get(key); return value && this.panel.has(key, value) ? value : ask[key]; };
+    const numbers = (text: string) => text.split(",").map(Number) as Place, isPlace = (place: Place) => place.length === 2 && place.every(Number.isFinite), at = pairs.get("at"), path = pairs.get("path")?.split(" ").map(numbers), texts = pairs.getAll("text");
+    const people = (texts.length ? texts : [ask.people[0].text]).map((text, i) => ({ text, at: !i && at && isPlace(numbers(at)) ? numbers(at) : null, path: !i && path?.every(isPlace) ? path : null }));
+    const range = numbers(pairs.get("range") ?? ""), landmarks = pairs.getAll("landmark").map((one): [string, Place] => [one.split(",")[0], numbers(one.split(",").slice(1).join(","))]).filter(([, place]) => isPlace(place));
+    return { ...ask, range: isPlace(range) ? range : null, landmarks, room: choice("room"), radar: choice("radar"), method: choice("method"), board: choice("board"), seed: Math.max(0, Math.round(Number(pairs.get("seed"))) || 0), people };
   }
 }
 
-/** The corners of a drawn line: places nearer than 12 cm to the line through the others are left out. */
-function corners(line: [number, number][]): [number, number][] {
-  if (line.length < 3) return line;
+/** The JSON of a request. */
+export function body({ people, landmarks, ...ask }: Ask): Record<string, unknown> {
+  return { ...ask, landmark: landmarks.map(([kind, place]) => `${kind}=${place}`), text: people.map((one) => one.text.trim()).filter((text, i) => i === 0 || text), at: people[0].at, path: people[0].path };
+}
+function address(ask: Ask): string {
+  const pairs = new URLSearchParams({ room: ask.room, radar: ask.radar, method: ask.method, seed: String(ask.seed) }), [{ at, path }] = ask.people;
+  for (const { text } of ask.people) if (text.trim()) pairs.append("text", text.trim());
+  if (ask.board) pairs.set("board", ask.board);
+  if (ask.range) pairs.set("range", ask.range.join(","));
+  for (const [kind, place] of ask.landmarks) pairs.append("landmark", `${kind},${place}`);
+  if (at) pairs.set("at", at.join(","));
+  if (path) pairs.set("path", path.map((p) => p.join(",")).join(" "));
+  return pairs.toString();
+}
+function problemOf(error: unknown, of: Problem["of"]): Problem {
+  if (error instanceof Refused) return { code: error.code, reason: error.message, ways: [...(error.waysOn as Way[]), ...nearest(error.message)], of };
+  console.error(error);
+  return { code: "input", reason: (error as Error).message, ways: [], of };
+}
+/** The known sentence that the server found nearest, as a button. */
+const nearest = (reason: string): Way[] => [...reason.matchAll(/did you mean '(.+?)'\?/g)].map(([, text]) => ({ label: `“${text}”`, change: { text } }));
+/** The corners of a drawn line: everything between them lies within 12 cm of it (Douglas and Peucker). */
+function corners(line: Place[]): Place[] {
   const [[ax, ay], [bx, by]] = [line[0], line.at(-1)!], length = Math.hypot(bx - ax, by - ay);
-  const away = ([x, y]: [number, number]) => (length < 1e-9 ? Math.hypot(x - ax, y - ay) : Math.abs((bx - ax) * (ay - y) - (ax - x) * (by - ay)) / length);
-  let far = 1;
+  const away = ([x, y]: Place) => (length ? Math.abs((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / length : Math.hypot(x - ax, y - ay));
+  let far = 0;
   line.forEach((place, k) => { if (k && k < line.length - 1 && away(place) > away(line[far])) far = k; });
   if (away(line[far]) < 0.12) return [line[0], line.at(-1)!];
   return [...corners(line.slice(0, far + 1)).slice(0, -1), ...corners(line.slice(far))];
 }
-const labelText = (found: { label: string; share: number; is_outside: boolean } | null) => (found ? `; recognised: ${found.label} (${Math.round(100 * found.share)} % of the votes${found.is_outside ? ", unlike anything it learned from" : ""})` : "");
+const labelText = (found: LiveFacts["label"]) => (found ? `; recognised: ${found.label} (${Math.round(100 * found.share)} % of the votes${found.is_outside ? ", unlike anything it learned from" : ""})` : "");
 const round = (value: number) => Math.round(value * 100) / 100;
-const read = (key: string): string[] => { try { return JSON.parse(localStorage.getItem(key) ?? "[]"); } catch { return []; } };
-function fill(control: HTMLSelectElement, options: [string, string][]): void { control.replaceChildren(...options.map(([value, label]) => element("option", { value }, label))); }

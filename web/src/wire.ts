@@ -1,7 +1,8 @@
 // The bytes of mmweaver.viz.body_in_photo: a JSON header, then little-endian arrays.
 
 export type Data = Uint8Array | Int16Array | Int32Array | Float32Array;
-export interface Tensor { data: Data; shape: number[] }
+/** `stride` is the number of frames that are kept of each person, where it is not the shape's. */
+export interface Tensor { data: Data; shape: number[]; stride?: number }
 export interface Packed { header: any; arrays: Record<string, Tensor> }
 
 const TYPES: Record<string, any> = { u1: Uint8Array, i2: Int16Array, i4: Int32Array, f4: Float32Array };

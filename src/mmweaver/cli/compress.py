@@ -73,12 +73,21 @@ def run(asked: Options) -> int:
 
     if asked.append and (is_raw or asked.overwrite):
         raise InputError("--append adds to a .mmw file; leave out --quality lossless and --overwrite")
-    may_exist = asked.overwrite or asked.append
+    may_exist = asked.overwrite or (asked.append and asked.out.exists())
     check_output_file(asked.out, overwrite=may_exist, inputs=[asked.file])
     return _compress_samples(asked) if is_raw else _compress_cube(asked)
 
 
 def _compress_cube(asked: Options) -> int:
+    from mmweaver.core.locks import locked
+
+    if not (asked.append and asked.out.exists()):
+        return _write_cube(asked, is_appended=False)
+    with locked(asked.out):  # another command may be appending
+        return _write_cube(asked, is_appended=True)
+
+
+def _write_cube(asked: Options, *, is_appended: bool) -> int:
     from mmweaver.cli.progress import StageBar
 
     start = time.monotonic()
@@ -91,7 +100,6 @@ def _compress_cube(asked: Options) -> int:
             asked.file, asked.radar_name(), range_m=asked.range_m, range_bins=asked.range_bins, **asked.reading()
         )
         frames, num_values = pieces.num_frames, pieces.num_frames * pieces.num_values_a_frame
-        is_appended = asked.append and asked.out.exists()
         before = asked.out.stat().st_size if is_appended else 0
         if is_appended or num_values > PIECE_VALUES:
             errors = compress_recording(

@@ -111,4 +111,4 @@ def _check_outputs(asked: Options, radar_out: Path) -> None:
         is_same = read_text(radar_out) == config.to_json()
     except InputError:
         is_same = False
-    check_output_file(radar_out, overwrite=asked.overwrite or is_same, inputs=[asked.file])
+    check_output_file(radar_out, overwrite=asked.overwrite or is_same, inputs=[asked.file], is_named=False)

@@ -11,7 +11,7 @@ from textwrap import fill
 from typing import TYPE_CHECKING
 
 from mmweaver.core.constants import __version__
-from mmweaver.core.errors import InputError
+from mmweaver.core.errors import InputError, one_line
 
 if TYPE_CHECKING:
     from mmweaver.cli.arguments import General, Parser
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 # in the order of the help; each is a module with Options, run and EXAMPLES, imported on demand
 COMMANDS = {
     "generate": "generate the signal of a person in the room of a photo",
-    "sample": "write files to try the other commands with",
+    "sample": "write files to try the other commands with, or sample a field",
     "studio": "make and watch radar data in the browser",
     "view": "play a result folder in the browser",
     "plot": "draw the features of a signal, as recognisers take them",
@@ -30,6 +30,7 @@ COMMANDS = {
     "points": "read a point cloud of a board or a data set",
     "pose": "estimate the poses of a person from a radar's points",
     "radar": "print a radar's chirp, resolutions and limits",
+    "fit": "fit a field to a signal, a network or scatterers, that can be sampled anywhere",
     "compress": "store a recording in few bytes",
     "decompress": "read a .mmw file back into radar.npz",
     "info": "print what a .mmw or .mmwl file holds",
@@ -79,6 +80,13 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _status(argv: list[str]) -> int:
+    from mmweaver.cli.terminal import safe_printing
+
+    with safe_printing():
+        return _printed_status(argv)
+
+
+def _printed_status(argv: list[str]) -> int:
     try:
         status = _run(argv)
         sys.stdout.flush()
@@ -97,9 +105,10 @@ def _status(argv: list[str]) -> int:
         return READER_GONE
     except MemoryError:
         return _fail("out of memory; ask for fewer --frames or close other programs")
+    except UnicodeEncodeError as error:
+        return _fail(f"{error.object[max(error.start - 60, 0) : error.end + 20]!r} is no text; rename it")
     except OSError as error:
-        place = f"{error.filename}: " if error.filename else ""
-        return _fail(f"{place}{error.strerror or error}")
+        return _fail(_failed(error))
 
 
 def build_parser() -> "Parser":
@@ -141,20 +150,74 @@ def _run(argv: list[str]) -> int:
     from mmweaver.cli.arguments import HELP_ALL, parsed
     from mmweaver.cli.progress import set_up_log
     from mmweaver.core.atomic_files import forget_written
+    from mmweaver.core.output_checks import forget_outputs
 
+    _check_words(argv)
     parser, commands = parser_of(*argv[:1], rare=HELP_ALL in argv)
     argv = ["--help" if word == HELP_ALL else word for word in argv]
     options = parsed(parser, commands, argv)
     if options is None:
         parser.print_help()
         return BAD_INPUT
+    _check_names(options)
     forget_written()
+    forget_outputs()
     set_up_log(verbose=options.verbose)
     return import_module(type(options).__module__).run(options)
 
 
+def _check_words(argv: list[str]) -> None:
+    """Rejects words that are no text, and a working directory that is gone, before anything is computed."""
+    for word in argv:
+        if not _is_text(word):
+            raise InputError(f"{word!r} is no UTF-8 text; rename the file, or type the word anew")
+    from pathlib import Path
+
+    try:
+        place = str(Path.cwd())
+    except OSError:
+        raise InputError("the working directory was removed; change into another one") from None
+    if not _is_text(place):
+        raise InputError(f"the name of the working directory, {place!r}, is no UTF-8 text; rename it")
+
+
+def _is_text(word: str) -> bool:
+    try:
+        word.encode("utf-8")
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
+def _check_names(options: "General") -> None:
+    """Rejects names of files with control characters, which would go to the terminal and into files."""
+    from pathlib import Path
+
+    from mmweaver.cli.terminal import printable
+
+    for value in vars(options).values():
+        for name in value if isinstance(value, list | tuple) else [value]:
+            if isinstance(name, Path) and printable(name) != str(name):
+                raise InputError(f"{str(name)!r} contains control characters; choose or rename it without them")
+
+
+def _failed(error: OSError) -> str:
+    """What the operating system refused, without names of unfinished files."""
+    from pathlib import Path
+
+    from mmweaver.core.output_checks import ADVICE
+    from mmweaver.core.staging import STAGED
+
+    name = str(error.filename or "")
+    if any(STAGED.fullmatch(part) for part in Path(name).parts):
+        name = ""
+    place = f"{name}: " if name else ""
+    advice = ADVICE.get(error.errno or 0)
+    return f"{place}{error.strerror or error}{f'; {advice}' if advice else ''}"
+
+
 def _fail(message: str) -> int:
-    print(f"mmweaver: error: {' '.join(message.split())}", file=sys.stderr)
+    print(f"mmweaver: error: {one_line(message)}", file=sys.stderr)
     return BAD_INPUT
 
 
@@ -162,7 +225,7 @@ def _kept() -> str:
     """Description of what an interrupted command has written completely."""
     from mmweaver.core.atomic_files import written
 
-    names = [str(path) for path in written()]
+    names = [str(path) for path in written() if path.exists()]
     if not names:
         return "nothing was written"
     return f"finished and kept: {', '.join(names[:3])}{f' and {len(names) - 3} more' if len(names) > 3 else ''}"

@@ -37,22 +37,15 @@ def run_stream(asked: "Options", out: Path) -> int:
         InputError: For options that streams do not support, or a first sentence that cannot be carried out.
     """
     from mmweaver.cli.generate_inputs import radar_of, read_background, room_of, weaver_of
-    from mmweaver.core.output_checks import check_output_folder, is_empty
-    from mmweaver.core.staging import sweep
+    from mmweaver.core.atomic_files import claimed_folder
+    from mmweaver.core.output_checks import check_output_folder
     from mmweaver.io.result_folder import META_VERSION, radar_meta
-    from mmweaver.io.stream_folder import LIST, PARTS, StreamFolder
+    from mmweaver.io.stream_folder import StreamFolder
 
     _check(asked)
     person = asked.of_one_person("--stream is of one person")
     check_output_folder(out, overwrite=True, inputs=asked.inputs)
-    sweep(out / PARTS)
-    if (out / LIST).is_file():
-        raise InputError(
-            f"{out} holds a stream already, and streams cannot be continued; choose another --out, or delete that"
-            " folder (`mmweaver verify` checks and `mmweaver compress` reads what it holds, even after an interruption)"
-        )
-    if out.is_dir() and not is_empty(out):
-        raise InputError(f"{out} is not empty; a stream needs a folder of its own: choose another --out")
+    _check_free(out)
     background = read_background(asked)
     weaver = weaver_of(asked, radar_of(asked, background))
     room = room_of(asked, weaver, background)
@@ -68,32 +61,56 @@ def run_stream(asked: "Options", out: Path) -> int:
         board=asked.board_name(),
         chunk_frames=PART_FRAMES if limit is None else min(PART_FRAMES, limit),
         heading_rad=asked.heading_rad,
+        missing=asked.missing,
+        parser=asked.parser,
+        strict=asked.strict,
         **person,
     )
-    try:
-        for chunk in chunks:
-            if folder is None:
-                shared = {name: chunk.meta[name] for name in chunk.meta if name not in OF_SENTENCE}
-                meta = {"schema_version": META_VERSION, "made_by": "mmweaver generate --stream", **shared}
-                meta |= radar_meta(chunk.cube.config)
-                folder = StreamFolder(out, meta, iq_order=asked.iq_order)
-            if chunk.refused:
-                print(f"skipped: {chunk.refused}", file=sys.stderr)
-            left = chunk.num_frames if limit is None else min(limit - folder.frames, chunk.num_frames)
-            chunk = chunk if left == chunk.num_frames else chunk.first(left)
-            sentence = {name: chunk.meta[name] for name in ("text", "refused", "clauses", "assumed")}
-            folder.add(chunk.cube, chunk.points, chunk.poses, chunk.adc, sentence)
-            if limit is not None and folder.frames >= limit:
-                break
-    except KeyboardInterrupt:
-        interrupted = True
-    if folder is None:
-        raise InputError("there is no sentence; give at least one")
-    meta = folder.finish()
+    with claimed_folder(out):
+        _check_free(out)
+        try:
+            for chunk in chunks:
+                if folder is None:
+                    shared = {name: chunk.meta[name] for name in chunk.meta if name not in OF_SENTENCE}
+                    meta = {"schema_version": META_VERSION, "made_by": "mmweaver generate --stream", **shared}
+                    meta |= radar_meta(chunk.cube.config)
+                    folder = StreamFolder(out, meta, iq_order=asked.iq_order)
+                if chunk.refused:
+                    print(f"skipped: {chunk.refused}", file=sys.stderr)
+                left = chunk.num_frames if limit is None else min(limit - folder.frames, chunk.num_frames)
+                chunk = chunk if left == chunk.num_frames else chunk.first(left)
+                sentence = {name: chunk.meta[name] for name in ("text", "refused", "clauses", "assumed")}
+                folder.add(chunk.cube, chunk.points, chunk.poses, chunk.adc, sentence)
+                if limit is not None and folder.frames >= limit:
+                    break
+        except KeyboardInterrupt:
+            if folder is None or not folder.parts:
+                raise
+            interrupted = True
+        if folder is None:
+            raise InputError("there is no sentence; give at least one")
+        meta = folder.finish()
     if interrupted:
         raise KeyboardInterrupt(f"{folder.frames} frames are in {out}")
     summary = {"out": str(out), "frames": meta["frames"], "parts": meta["parts"]}
     return asked.report(summary, f"wrote {out}: {meta['frames']} frames in {meta['parts']} parts")
+
+
+def _check_free(out: Path) -> None:
+    """Rejects a folder that holds a stream or anything else, after removing leftovers of killed processes."""
+    from mmweaver.core.output_checks import is_empty
+    from mmweaver.core.staging import is_own_folder, sweep
+    from mmweaver.io.stream_folder import LIST, PARTS
+
+    if is_own_folder(out / PARTS):
+        sweep(out / PARTS)
+    if (out / LIST).is_file():
+        raise InputError(
+            f"{out} holds a stream already, and streams cannot be continued; choose another --out, or delete that"
+            " folder (`mmweaver verify` checks and `mmweaver compress` reads what it holds, even after an interruption)"
+        )
+    if out.is_dir() and not is_empty(out):
+        raise InputError(f"{out} is not empty; a stream needs a folder of its own: choose another --out")
 
 
 def _check(asked: "Options") -> None:

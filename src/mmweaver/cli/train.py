@@ -1,7 +1,7 @@
 """mmweaver train: weights from a data set, from recordings of one's own room, or from the sentences of a task."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -21,17 +21,20 @@ RUN_FILES = ("weights.safetensors", "best.safetensors", "checkpoint.pt", "log.js
 # options of some recipes; fine-tuning is recipe weaver on recordings
 USES = {
     "weaver": "data start encoder",
+    "hypernetwork": "data start target",
     "activity": "data start",
     "pose": "task sequences",
     "fine-tuning": "recordings start rgb depth camera",
 }
-NEEDS = {"weaver": "data", "activity": "data", "pose": "task", "fine-tuning": "start"}
+NEEDS = {"weaver": "data", "hypernetwork": "data", "activity": "data", "pose": "task", "fine-tuning": "start"}
 MAX_LEARNING_RATE = 1.0  # far above what Adam learns with
 EXAMPLES = """examples:
   mmweaver dataset data/ --layouts 10 --sequences 20 --workers 4
   mmweaver train weaver --data data/ --out run/ --tensorboard
   mmweaver train weaver --weights run/ --recordings take1/ take2/ take3/ --out tuned/
   torchrun --nproc-per-node 4 -m mmweaver train weaver --data data/ --out run/ --batch 12
+  mmweaver train hypernetwork --data data/ --target signal --out paper/      # the paper as written
+  mmweaver train hypernetwork --data data/ --target power --out power/       # what can be learned
   mmweaver train activity --data data/ --out activity/
   mmweaver train activity --data my_set/ --out recogniser/          # of mmweaver dataset --activities
   mmweaver train pose examples/tasks/mars_poses.toml --out model/   # then: mmweaver pose model/ --points log.dat
@@ -46,8 +49,9 @@ class Options(Printed):
     compares what it has learned with the ground truth.
     """
 
-    recipe: Literal["weaver", "activity", "pose"] = option(
-        "what is trained: the network; a recogniser of the activities of the data; or poses from points",
+    recipe: Literal["weaver", "hypernetwork", "activity", "pose"] = option(
+        "what is trained: the network; the paper's hypernetwork; a recogniser of the activities of the data; or poses"
+        " from points",
         default=MISSING,
         positional=True,
     )
@@ -58,6 +62,10 @@ class Options(Printed):
     out: Path = option("folder for checkpoint, log and weights", "DIR", default=MISSING, is_setting=False)
     start: Source | None = option(
         "weights of the same recipe to start from (default: random)", "FILE|DIR|HUB", name="weights"
+    )
+    target: Literal["signal", "power"] | None = option(
+        "recipe hypernetwork: complex signals, as the paper has it, or fields of power (default power)",
+        group="the paper's hypernetwork",
     )
     recordings: Any = option(
         "folders of mmweaver process or generate (radar.npz), or of mmwave-capture-std; with pose.npz where the joints"
@@ -72,16 +80,21 @@ class Options(Printed):
     depth: Path | None = option("its depth: 16-bit PNG (mm), .npy or float TIFF in metres", "FILE")
     camera: Path | None = option("its camera: fx, fy, cx, cy in pixels", "JSON")
     sequences: int | None = option("recipe pose: people per activity (default 40)", "N", group="optimisation")
-    steps: int | None = option("total number of steps (default 6000; activity 800, pose 2000, recordings 300)", "N")
+    steps: int | None = option(
+        "total number of steps (default 6000; target power 3000, activity 800, pose 2000, recordings 300)", "N"
+    )
     batch: int | None = option(
-        "sequences per step, over all processes (default 3; activity and pose 16, recordings 2)", "N"
+        "sequences per step, over all processes (default 3; target signal 4, activity and pose 16, recordings 2)", "N"
     )
     learning_rate: float | None = option(
-        "peak learning rate of AdamW (default 1e-3; activity and pose 2e-3, recordings 2e-4, without joints 5e-3)",
+        "peak learning rate of AdamW (default 1e-3; target signal 1e-4, activity and pose 2e-3, recordings 2e-4,"
+        " without joints 5e-3)",
         "RATE",
     )
     seed: int = option("seed of the initial weights and of the batches", "N", default=0)
-    validate_every: int | None = option("steps between validations (default 250; activity 100, recordings 25)", "STEPS")
+    validate_every: int | None = option(
+        "steps between validations (default 250; target signal 200, activity 100, recordings 25)", "STEPS"
+    )
     encoder: str | None = option("recipe weaver's environment encoder (default efficientnet)", "NAME", rare=True)
     save_every: float = option("seconds between checkpoints", "S", default=60.0)
     device: str = option(
@@ -112,6 +125,7 @@ def run(asked: Options) -> int:
         InputError: For options or data that cannot be used.
     """
     _check(asked)
+    from mmweaver.core.atomic_files import claimed_folder
     from mmweaver.core.output_checks import check_output_folder
     from mmweaver.training.device import ComputeDevice
 
@@ -121,9 +135,10 @@ def run(asked: Options) -> int:
     check_output_folder(asked.out, overwrite=True, files=RUN_FILES, inputs=[start])
     recipe = asked.mode
     try:
-        summary = _RECIPES[recipe](asked, place, is_quiet)
-        if place.is_first:
-            write_request(asked.out, asked)
+        with claimed_folder(asked.out) if place.is_first else nullcontext():
+            summary = _RECIPES[recipe](asked, place, is_quiet)
+            if place.is_first:
+                write_request(asked.out, asked)
     except KeyboardInterrupt:
         file = asked.out / "checkpoint.pt"
         kept = f"{file} is kept: the same command resumes from it" if file.is_file() else ""
@@ -173,6 +188,29 @@ def _train_weaver(asked: Options, place: "ComputeDevice", is_quiet: bool) -> dic
         trainer = train(asked.data, asked.out, recipe, start=start, **how)
     file = write_weights(asked.out, asked.data, trainer, start=start) if place.is_first else None
     return _summary(file, trainer)
+
+
+def _train_hypernetwork(asked: Options, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:
+    from mmweaver.models.hub import find_weights
+    from mmweaver.models.hypernetwork_rooms import load_hypernetwork
+    from mmweaver.training.hypernetwork_training import (
+        HypernetworkRecipe,
+        train_hypernetwork,
+        write_hypernetwork_weights,
+    )
+
+    target, start = asked.target or "power", None
+    if asked.start is not None:
+        weights = find_weights(asked.start)
+        network, card = load_hypernetwork(weights)
+        if card.target != target:
+            raise InputError(f"{weights} has target {card.target}, not {target}; give --target {card.target}")
+        start = network.state_dict()
+    recipe = HypernetworkRecipe.for_target(target, **asked.settings)
+    with _listening(asked, place, recipe.steps, is_quiet) as how:
+        trainer = train_hypernetwork(asked.data, asked.out, recipe, start=start, **how)
+    file = write_hypernetwork_weights(asked.out, asked.data, trainer) if place.is_first else None
+    return {**_summary(file, trainer), "target": target, "validation": trainer.best.figures}
 
 
 def _train_activity(asked: Options, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:
@@ -241,6 +279,7 @@ def _tune(asked: Options, place: "ComputeDevice", is_quiet: bool) -> dict[str, A
 
 _RECIPES = {
     "weaver": _train_weaver,
+    "hypernetwork": _train_hypernetwork,
     "activity": _train_activity,
     "pose": _train_pose,
     "fine-tuning": _tune,

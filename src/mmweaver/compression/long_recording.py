@@ -5,6 +5,7 @@ Writes a long recording to a .mmw file piece by piece with constant memory, or a
 
 import os
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import TracebackType
@@ -29,6 +30,7 @@ from mmweaver.compression.quantised_cells import active_mask
 from mmweaver.compression.transforms import transform_choices
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
+from mmweaver.core.locks import locked
 from mmweaver.core.output_checks import cannot_write
 from mmweaver.core.records import RadarCube
 from mmweaver.core.seeding import single_precision
@@ -58,9 +60,18 @@ class MmwWriter:
         self._header: MmwHeader | None = None
         self._last_s: float | None = None
         self._end = 0
+        self._held = ExitStack()
+        try:
+            self._open(path, append)
+        except BaseException:
+            self._held.close()
+            raise
+
+    def _open(self, path: Path | str, append: bool) -> None:
         if self.path.exists():
             if not append:
                 raise InputError(f"{path} exists; choose another name or append to it")
+            self._held.enter_context(locked(self.path))  # another process may be appending
             file = MmwFile(self.path)
             if file.version in LISTED:
                 raise InputError(f"{path} is of version {file.version}, which cannot be appended to; compress it again")
@@ -159,6 +170,7 @@ class MmwWriter:
     def close(self) -> None:
         """Closes the file."""
         self._stream.close()
+        self._held.close()
 
     def _write(self, data: bytes) -> None:
         try:

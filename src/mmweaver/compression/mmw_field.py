@@ -64,14 +64,14 @@ class MmwField(SignalField):
                 out[chosen] += map_coordinates(residual, place.T, order=1, mode="nearest") * phasor[chosen]
         return out
 
-    def on_grid(self, grid: CubeGrid) -> CubeValues:
-        """Values at the cells of any grid of this radar; see `SignalField.on_grid`."""
+    def values_on(self, grid: CubeGrid) -> CubeValues:
+        """Values at the cells of any grid of this radar; see `SignalField.values_on`."""
         frame, *cells = coordinates_on(self.grid, grid)
         phasor = self.response.phasor(self.response.axes(grid)).numpy()
         out = np.zeros(grid.shape, np.complex64)
         for chosen, first, field, residual in self._parts(frame):
             if field is not None:
-                out[chosen] = field.on_grid(replace(grid, frame_time_s=grid.frame_time_s[chosen]))
+                out[chosen] = field.values_on(replace(grid, frame_time_s=grid.frame_time_s[chosen]))
             if residual is not None:
                 part = residual[np.clip(np.rint(frame[chosen]).astype(int) - first, 0, len(residual) - 1)]
                 for axis, cell in enumerate(cells, start=1):

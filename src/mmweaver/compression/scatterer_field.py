@@ -7,14 +7,16 @@ velocity and phase until the next frame's take over), and for another radar (`fo
 import math
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import torch
 from jaxtyping import Complex
 from torch import Tensor
 
+from mmweaver.compression.field_file import FieldFile
 from mmweaver.compression.scatterers.fit_window import FitWindow, long_window, overlap_hop
-from mmweaver.compression.scatterers.fitting import FitRecipe, fitted
+from mmweaver.compression.scatterers.fitting import FitRecipe, Progress, fitted
 from mmweaver.compression.scatterers.layers import Layers, cell_noise, no_points, overlapping_noise, rendered
 from mmweaver.compression.signal_field import Coordinates, SignalField, cells_at, coordinates_on
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
@@ -28,6 +30,7 @@ from mmweaver.signal.windows import doppler_window, doppler_window_middle
 
 POINTS_A_FRAME = 83  # of six values: about the 10,018 values of the paper's INR in 20 frames
 SAMPLES_AT_ONCE = 1 << 14
+POINT_TENSORS = ("range_bin", "doppler_bin", "direction")  # stored as they are
 STATIC_POINTS = 200  # scatterers that replace the static layer for another radar
 
 
@@ -39,12 +42,15 @@ class ScattererField(SignalField):
         self.config, self.grid, self.scale, self.peak = fit_window.config, grid, scale, peak
 
     @classmethod
-    def fit(cls, cube: RadarCube, recipe: FitRecipe | None = None) -> "ScattererField":
+    def fit(
+        cls, cube: RadarCube, recipe: FitRecipe | None = None, progress: Progress | None = None
+    ) -> "ScattererField":
         """Fits scatterers to a cube.
 
         Args:
             cube: the sequence.
             recipe: budget and effort; by default 83 points per frame and a static layer.
+            progress: called with stage, number of stages and error in dB.
 
         Raises:
             InputError: where the cube is all zeros or not finite.
@@ -58,7 +64,35 @@ class ScattererField(SignalField):
         fit_window = FitWindow.of(cube.config, len(values), overlap_hop(cube))
         working = fit_window.working(values / np.float32(peak))
         recipe = recipe or FitRecipe(num_points=POINTS_A_FRAME * len(values), with_static=len(values) > 1)
-        return cls(fitted(working, fit_window, recipe), fit_window, cube.grid, cube.scale, peak)
+        return cls(fitted(working, fit_window, recipe, progress), fit_window, cube.grid, cube.scale, peak)
+
+    @classmethod
+    def of(cls, file: FieldFile) -> "ScattererField":
+        """The field of a file."""
+        held, about = file.tensors, file.about
+        points = Points(
+            **{name: held[name] for name in POINT_TENSORS}, amplitude=torch.view_as_complex(held["amplitude"])
+        )
+        layers = Layers(
+            points=points, static=torch.view_as_complex(held["static"]),
+            calibration=torch.view_as_complex(held["calibration"]), noise_power=about["noise_power"],
+            active_beams=held["active_beams"].bool().numpy() if "active_beams" in held else None,
+        )  # fmt: skip
+        fit_window = FitWindow.of(file.config, file.grid.shape[0], about["hop"])
+        return cls(layers, fit_window, file.grid, file.scale, about["peak"])
+
+    def save(self, path: Path | str) -> None:
+        """Writes the field as safetensors; see `SignalField.save`."""
+        layers = self.layers
+        tensors = {name: getattr(layers.points, name) for name in POINT_TENSORS}
+        parts = {"amplitude": layers.points.amplitude, "static": layers.static, "calibration": layers.calibration}
+        tensors |= {name: torch.view_as_real(part.resolve_conj()) for name, part in parts.items()}
+        if layers.active_beams is not None:
+            tensors["active_beams"] = torch.from_numpy(layers.active_beams.astype(np.uint8))
+        FieldFile(
+            kind=type(self).__name__, tensors=tensors, config=self.config, grid=self.grid, scale=self.scale,
+            about={"noise_power": layers.noise_power, "hop": self.fit_window.hop, "peak": self.peak},
+        ).write(path)  # fmt: skip
 
     @property
     def num_values(self) -> int:
@@ -94,8 +128,8 @@ class ScattererField(SignalField):
             torch.set_num_threads(before)
         return out
 
-    def on_grid(self, grid: CubeGrid) -> CubeValues:
-        """Values at the cells of any grid of this radar; see `SignalField.on_grid`."""
+    def values_on(self, grid: CubeGrid) -> CubeValues:
+        """Values at the cells of any grid of this radar; see `SignalField.values_on`."""
         if grid is self.grid:
             return self.native()
         frame, range_cell, _, antenna = coordinates_on(self.grid, grid)

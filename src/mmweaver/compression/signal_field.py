@@ -1,21 +1,11 @@
 """The interface of all fields, a radar sequence as a function of continuous coordinates, and the grids they sample.
 
 Reference: paper, "Sampling" and "Data Augmentation".
-
-Phase-centring: a phase rotation of each range and Doppler bin that makes a cube smooth along both axes.
-
-The phase of the DFT of a window centred on sample N/2 rotates by -pi per bin: along range and Doppler a raw cube sits
-at its grid's Nyquist frequency, where neither learning nor interpolation works. Referred to the middle of the window
-instead, the response of a scatterer is real, and the cube is smooth.
-
-`signal.cube` uses the *periodic* Hann window, which is exactly symmetric about sample N/2, so the phasor is
-exp(+j pi r) exp(+j pi (d - M/2)). A symmetric window is centred on (N - 1)/2, which gives a factor (N - 1)/N; with a
-periodic window that would leave a slope of 180/N degrees per bin. r counts range bins of the radar's full transform,
-and d from zero Doppler, so cubes of radars with the same centre frequency agree after centring.
 """
 
 from abc import ABC, abstractmethod
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 from jaxtyping import Complex, Float
@@ -31,7 +21,6 @@ Axes = tuple[Axis, Axis, Axis, Axis]
 Coordinates = Float[np.ndarray, "point 4"]
 Places = Float[np.ndarray, "place 3"]
 
-RADIUS_PARTS = 8  # the paper divides the step between two indices into eighths
 OFF_THE_LINE = 1e-3  # of a wavelength
 CHUNK_POINTS = 1 << 18  # points of a grid that are sampled together
 
@@ -65,7 +54,7 @@ class SignalField(ABC):
             (point,), complex64.
         """
 
-    def on_grid(self, grid: CubeGrid) -> CubeValues:
+    def values_on(self, grid: CubeGrid) -> CubeValues:
         """Values at the cells of any grid; fields with a faster way than point by point override this.
 
         Args:
@@ -89,14 +78,52 @@ class SignalField(ABC):
     def cube(self, grid: CubeGrid | None = None) -> RadarCube:
         """The field as a RadarCube, on its native grid or on another."""
         grid = self.grid if grid is None else grid
-        return RadarCube(values=self.on_grid(grid), grid=grid, config=self.config, scale=self.scale)
+        return RadarCube(values=self.values_on(grid), grid=grid, config=self.config, scale=self.scale)
 
-    def finer(self, n_r: float = 1.0, n_d: float = 1.0, n_a: float = 1.0) -> RadarCube:
-        """The field sampled n_r, n_d, n_a times finer along range, Doppler and antennas; see `finer_grid`."""
+    def on_grid(self, n_r: float | int = 1, n_d: float | int = 1, n_a: float | int = 1) -> RadarCube:
+        """The field sampled n_r, n_d, n_a times finer: super-resolution, of N_new = n_r n_d n_a N_orig samples.
+
+        Args:
+            n_r: Along range.
+            n_d: Along Doppler.
+            n_a: Along antennas.
+
+        Returns:
+            The cube on `finer_grid`.
+
+        Raises:
+            InputError: for a factor below 1.
+        """
         return self.cube(finer_grid(self.grid, n_r=n_r, n_d=n_d, n_a=n_a))
 
+    def jitter(self, radius: float, seed: int = 0) -> RadarCube:
+        """The field sampled at random within a radius of its cells: the paper's augmentation, see `sampled_grid`.
 
-def finer_grid(grid: CubeGrid, *, n_r: float = 1.0, n_d: float = 1.0, n_a: float = 1.0) -> CubeGrid:
+        Args:
+            radius: In cells, below 1; the paper's r / 8.
+            seed: Of the coordinates.
+
+        Returns:
+            A cube of the native shape.
+
+        Raises:
+            InputError: for another radius.
+        """
+        return self.cube(sampled_grid(self.grid, radius, seed))
+
+    def save(self, path: Path | str) -> None:
+        """Writes the field as safetensors; `mmweaver.inr.load` reads it back, bit for bit.
+
+        Args:
+            path: the file.
+
+        Raises:
+            InputError: if it cannot be written, or the field is a file already.
+        """
+        raise InputError(f"a {type(self).__name__} is a file already; copy it")
+
+
+def finer_grid(grid: CubeGrid, *, n_r: float | int = 1, n_d: float | int = 1, n_a: float | int = 1) -> CubeGrid:
     """The grid over the same extent, in steps n times smaller.
 
     Range and Doppler: n cells for each original one, as a radar of n times the bandwidth or loops has (so the last
@@ -116,17 +143,17 @@ def finer_grid(grid: CubeGrid, *, n_r: float = 1.0, n_d: float = 1.0, n_a: float
     )
 
 
-def sampled_grid(grid: CubeGrid, radius: int, seed: int) -> CubeGrid:
-    """Range, Doppler and antenna coordinates sampled uniformly from [j, j + radius / 8], one for each index j.
+def sampled_grid(grid: CubeGrid, radius: float, seed: int) -> CubeGrid:
+    """Range, Doppler and antenna coordinates sampled uniformly from [j, j + radius], one for each index j.
 
-    The last index of each axis is unchanged. Raises InputError for a radius outside 0 to 7.
-    Reference: paper, "Data Augmentation" (sampling radius).
+    The last index of each axis is unchanged. Raises InputError for a radius that is negative or not below 1.
+    Reference: paper, "Data Augmentation" (sampling radius, in eighths).
     """
-    if not 0 <= radius < RADIUS_PARTS:
-        raise InputError(f"the sampling radius goes from 0 to {RADIUS_PARTS - 1}, not {radius}")
+    if not 0 <= radius < 1:
+        raise InputError(f"the sampling radius is 0 or more and below 1 (cells), not {radius:g}")
 
     def sampled(axis: str, num: int) -> Axis:
-        offset = stream(seed, "sampling radius", axis).random(num) * radius / RADIUS_PARTS
+        offset = stream(seed, "sampling radius", axis).random(num) * radius
         offset[-1] = 0.0
         return np.arange(num) + offset
 
@@ -207,7 +234,7 @@ def antenna_coordinate(native_m: AntennaPositions, wanted_m: Places, wavelength_
     return number
 
 
-def _refined(values: Axis, factor: float) -> Axis:
+def _refined(values: Axis, factor: float | int) -> Axis:
     num = int(len(values) * factor + 1e-9)
     step = values[1] - values[0] if len(values) > 1 else 0.0
     return values[0] + np.arange(num) * (step / factor)
@@ -217,23 +244,3 @@ def _cell_coordinates(native: Axis, wanted: Axis) -> Axis:
     if len(native) < 2:
         return np.zeros(len(wanted))
     return (wanted - native[0]) / (native[1] - native[0])
-
-
-def centring_phasor(config: RadarConfig, grid: CubeGrid) -> Complex[np.ndarray, "range doppler"]:
-    """exp(+j pi r) exp(+j pi d) at the cells of a grid, with r and d in bins of the radar's own transforms."""
-    range_bin = grid.range_m / config.range_resolution_m
-    doppler_bin = grid.radial_velocity_mps / config.velocity_resolution_mps
-    return np.exp(1j * np.pi * (range_bin[:, None] + doppler_bin[None, :])).astype(np.complex64)
-
-
-def centring_phasor_at(config: RadarConfig, grid: CubeGrid, coordinates: Coordinates) -> Complex[np.ndarray, " point"]:
-    """The same phasor at coordinates in cells of `grid`, the radar's native grid."""
-    range_bin = grid.range_m[0] / config.range_resolution_m + coordinates[:, 1]
-    doppler_bin = grid.radial_velocity_mps[0] / config.velocity_resolution_mps + coordinates[:, 2]
-    return np.exp(1j * np.pi * (range_bin + doppler_bin)).astype(np.complex64)
-
-
-def centred(cube: RadarCube) -> RadarCube:
-    """The cube with its phase referred to the middle of the chirp and of the frame; lossless."""
-    phasor = centring_phasor(cube.config, cube.grid)
-    return replace(cube, values=cube.values * phasor[None, :, :, None])

@@ -6,14 +6,29 @@ Reference: docs/decisions/writing-files.md.
 """
 
 import os
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO
 
 from mmweaver.core.checksums import SUMS_FILE, read_sums, sums_text, write_sums
 from mmweaver.core.errors import InputError
-from mmweaver.core.output_checks import cannot_write, check_output_folder, is_empty, resolved
-from mmweaver.core.staging import COMMITTED, finish_moving, is_staged, remove, staging_path, sweep, sync, sync_tree
+from mmweaver.core.locks import locked
+from mmweaver.core.output_checks import cannot_write, check_folder, is_empty, is_expected, place_of
+from mmweaver.core.safe_files.regular_files import MEGABYTE, read_bytes
+from mmweaver.core.staging import (
+    COMMITTED,
+    is_staged,
+    move_committed,
+    remove,
+    staging_path,
+    sweep,
+    sync,
+    sync_tree,
+)
+
+MAX_ONCE_BYTES = 64 * MEGABYTE  # of a file that is created once
 
 _written: list[Path] = []
 
@@ -48,7 +63,7 @@ def atomic_files(*paths: Path) -> Iterator[list[Path]]:
     Raises:
         InputError: If one of them cannot be written.
     """
-    targets = [resolved(path) for path in paths]
+    targets = [place_of(path) for path in paths]
     made: list[Path] = []
     staged: list[Path] = []
     try:
@@ -60,7 +75,9 @@ def atomic_files(*paths: Path) -> Iterator[list[Path]]:
         for temporary in staged:
             sync(temporary)
         _sync_names(made)
-        _rename_all(staged, targets)
+        if targets:
+            with locked(targets[0].parent):
+                _rename_all(staged, targets)
     except OSError as error:
         raise cannot_write(Path(paths[0]), error) from error
     finally:
@@ -91,7 +108,9 @@ def _rename_all(staged: list[Path], targets: list[Path]) -> None:
     new: list[Path] = []
     try:
         for temporary, target in zip(staged, targets, strict=True):
-            is_new = not target.exists()
+            is_new = not os.path.lexists(target)
+            if not (is_new or is_expected(target)):
+                raise InputError(f"{target} was written by another command meanwhile; choose another name")
             if not is_new:
                 _forget_sum(target)
             new += [target] if is_new else []
@@ -123,11 +142,11 @@ def staged_folder(out: Path, *, overwrite: bool = False, keep_existing: bool = F
         A temporary folder; becomes `out` on success, removed on any error.
 
     Raises:
-        InputError: If `check_output_folder` rejects `out`, or it cannot be written.
+        InputError: If `out` is a file, or not empty without `overwrite`, or it cannot be written.
     """
-    target = resolved(out)
+    target = place_of(out, is_folder=True)
     if not keep_existing:
-        check_output_folder(out, overwrite=overwrite)
+        check_folder(out, target, overwrite=overwrite)
     made: list[Path] = []
     stage: Path | None = None
     try:
@@ -140,14 +159,17 @@ def staged_folder(out: Path, *, overwrite: bool = False, keep_existing: bool = F
         stage.mkdir()
         yield stage
         write_sums(stage)
-        if not is_new:
-            _keep_sums(target, stage)
-        sync_tree(stage)
-        _sync_names(made)
         if is_new:
+            sync_tree(stage)
+            _sync_names(made)
             _rename_new(stage, target, keep_existing=keep_existing)
         else:
-            _move_into(stage, target)
+            with locked(target):
+                check_folder(out, target, overwrite=overwrite)  # another command may have written there meanwhile
+                _keep_sums(target, stage)
+                sync_tree(stage)
+                _sync_names(made)
+                _move_into(stage, target)
         _written.append(Path(out))
     except OSError as error:
         raise cannot_write(Path(out), error) from error
@@ -191,9 +213,9 @@ def _move_into(stage: Path, folder: Path) -> None:
     stage.rename(folder / COMMITTED)
     try:
         sync(folder)
-        finish_moving(folder)
+        move_committed(folder)
     except KeyboardInterrupt:
-        finish_moving(folder)
+        move_committed(folder)
         _written.append(folder)
         raise
 
@@ -211,11 +233,12 @@ def create_once(path: Path, text: str) -> str:
     Raises:
         InputError: If it cannot be written or read.
     """
+    path = place_of(path)
     with_others = path.parent
     try:
         made = _make_folders(with_others)
         sweep(with_others)
-        if not path.exists():
+        if not os.path.lexists(path):
             temporary = _new_file(path)
             try:
                 temporary.write_text(text, encoding="utf-8")
@@ -229,7 +252,7 @@ def create_once(path: Path, text: str) -> str:
                 raise
             remove(temporary)
             _written.append(path)
-        return path.read_text(encoding="utf-8")
+        return read_bytes(path, max_bytes=MAX_ONCE_BYTES).decode("utf-8", "replace")
     except OSError as error:
         raise cannot_write(path, error) from error
 
@@ -256,11 +279,55 @@ def append_line(path: Path, line: str) -> None:
         InputError: If it cannot be written.
     """
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with path.open("a", encoding="utf-8") as file:
-            file.write(f"{line}\n")
+        with opened_to_append(path) as file:
+            file.write(f"{line}\n".encode())
     except OSError as error:
         raise cannot_write(path, error) from error
+
+
+@contextmanager
+def opened_to_append(path: Path) -> Iterator[BinaryIO]:
+    """Opens a file of an output folder to append to it; a link or a FIFO is refused.
+
+    Args:
+        path: The file; missing parent folders are created.
+
+    Yields:
+        The open file.
+
+    Raises:
+        InputError: If it is not a regular file of that folder.
+        OSError: If it cannot be written.
+    """
+    place = place_of(path)
+    place.parent.mkdir(parents=True, exist_ok=True)
+    if os.path.lexists(place) and not stat.S_ISREG(place.lstat().st_mode):
+        raise InputError(f"{path} is no regular file; remove it or choose another --out")
+    flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
+    with os.fdopen(os.open(place, flags | getattr(os, "O_BINARY", 0), 0o666), "ab") as file:
+        yield file
+
+
+@contextmanager
+def claimed_folder(out: Path) -> Iterator[None]:
+    """Holds an output folder that a command fills part by part; a second command is refused.
+
+    Args:
+        out: The folder; created, and removed again if it is still empty at the end.
+
+    Raises:
+        InputError: If another command holds it.
+    """
+    target = place_of(out, is_folder=True)
+    try:
+        made = _make_folders(target)
+    except OSError as error:
+        raise cannot_write(out, error) from error
+    try:
+        with locked(target, wait_s=0.0):
+            yield
+    finally:
+        _remove_empty(made)
 
 
 def written() -> list[Path]:

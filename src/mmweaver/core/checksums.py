@@ -12,7 +12,7 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from mmweaver.core.errors import InputError
+from mmweaver.core.errors import InputError, one_line
 from mmweaver.core.safe_files.regular_files import foreign_errors, open_regular, read_bytes
 
 SUMS_FILE = "SHA256SUMS"
@@ -29,7 +29,7 @@ class Damage:
     what: str  # "is missing" or "is not as it was written"
 
     def __str__(self) -> str:
-        return f"{self.file} {self.what}"
+        return f"{one_line(str(self.file))} {self.what}"
 
 
 def sha256_of_file(path: Path) -> str:

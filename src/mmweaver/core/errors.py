@@ -16,6 +16,8 @@ class InputError(ValueError):
     prints the line as is and exits with status 2; any other exception is a bug.
     """
 
+    code = "input"  # which kind of mistake, for readers that have words of their own, such as the studio's page
+
     def __init__(self, message: object = ""):
         super().__init__(one_line(str(message)))
 
@@ -37,12 +39,32 @@ def file_named(path: object) -> Iterator[None]:
         raise InputError(text if text.startswith(str(path)) else f"{path}: {text}") from None
 
 
+@contextlib.contextmanager
+def error_code(code: str) -> Iterator[None]:
+    """Context that gives InputErrors raised inside a code, unless they have one.
+
+    Args:
+        code: The code.
+
+    Raises:
+        InputError: The same, with the code.
+    """
+    try:
+        yield
+    except InputError as error:
+        if error.code == InputError.code:
+            error.code = code
+        raise
+
+
 class NoRoomError(InputError):
     """A motion does not fit into a room; `recovery_options` lists what would help.
 
     Keys, where known: `nearest_place_m` (x, y); `range_m`, the (near, far) range window that place needs, None if the
     radar cannot provide it; `radars`, names of presets that can.
     """
+
+    code = "no_room"
 
     def __init__(self, message: str, *, recovery_options: Mapping[str, Any] | None = None) -> None:
         self.recovery_options: dict[str, Any] = dict(recovery_options or {})

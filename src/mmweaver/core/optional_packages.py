@@ -25,7 +25,7 @@ def hub_log_off() -> Iterator[None]:
 # module -> package for each extra named in error messages; a test compares this with pyproject.toml and all imports
 EXTRAS: dict[str, dict[str, str]] = {
     "capture": {"av": "av", "rosbags": "rosbags", "zstandard": "zstandard"},
-    "codecs": {"blosc2": "blosc2", "imagecodecs": "imagecodecs", "pywt": "pywavelets", "tensorly": "tensorly"},
+    "codecs": {"blosc2": "blosc2", "imagecodecs": "imagecodecs", "tensorly": "tensorly"},
     "cluster": {"ray": "ray", "zarr": "zarr"},
     "completion": {"shtab": "shtab"},
     "dataset": {"numcodecs": "numcodecs", "zarr": "zarr"},

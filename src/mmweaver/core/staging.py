@@ -14,9 +14,13 @@ import os
 import platform
 import re
 import shutil
+import stat
 import time
 from functools import cache
 from pathlib import Path
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.locks import locked
 
 ABANDONED_S = 3600.0
 COMMITTED = ".mmweaver-committed"  # subfolder of complete new files that are being moved into place
@@ -90,7 +94,7 @@ def sweep(folder: Path, *, again: bool = False) -> None:
     except OSError:
         return
     for leftover in staged:
-        if not is_being_written(leftover):
+        if _is_mine(leftover) and not is_being_written(leftover):
             remove(leftover)
 
 
@@ -104,7 +108,7 @@ def remove(path: Path) -> None:
 
 
 def _remove(path: Path) -> None:
-    if path.is_dir() and not path.is_symlink():
+    if is_own_folder(path):
         for pause_s in _PAUSES_S:
             shutil.rmtree(path, ignore_errors=True)
             if not path.exists():
@@ -115,8 +119,45 @@ def _remove(path: Path) -> None:
         path.unlink(missing_ok=True)
 
 
+def is_own_folder(path: Path) -> bool:
+    """Whether a path is a folder itself and no link to one."""
+    try:
+        return stat.S_ISDIR(path.lstat().st_mode)
+    except OSError:
+        return False
+
+
+def _is_mine(path: Path) -> bool:
+    """Whether this user made a file or folder."""
+    try:
+        return not hasattr(os, "geteuid") or path.lstat().st_uid == os.geteuid()
+    except OSError:
+        return False
+
+
 def finish_moving(folder: Path) -> None:
     """Completes an interrupted move of new files into place.
+
+    Args:
+        folder: The folder that is being filled.
+
+    Raises:
+        InputError: If something else has the name of the subfolder of new files, such as a link.
+        OSError: If a file cannot be moved.
+    """
+    committed = folder / COMMITTED
+    if not os.path.lexists(committed):
+        return
+    with locked(folder):  # another process may be moving them
+        if not os.path.lexists(committed):
+            return
+        if not (is_own_folder(committed) and _is_mine(committed)):
+            raise InputError(f"{committed} is not a folder that mmweaver has left; remove it")
+        move_committed(folder)
+
+
+def move_committed(folder: Path) -> None:
+    """Moves the new files of a folder into place.
 
     Args:
         folder: The folder that is being filled.
@@ -125,19 +166,15 @@ def finish_moving(folder: Path) -> None:
         OSError: If a file cannot be moved.
     """
     committed = folder / COMMITTED
-    if not committed.is_dir():
-        return
-    try:
+    with locked(folder):
         # checksums first: until all files are in place, missing or old ones do not match
         for file in sorted(committed.iterdir(), key=lambda file: file.name != "SHA256SUMS"):
             place = folder / file.name
-            if place.is_dir() and file.is_dir():
+            if is_own_folder(place) and is_own_folder(file):
                 shutil.rmtree(place)
             file.replace(place)
         sync(folder)
         committed.rmdir()
-    except FileNotFoundError:
-        pass  # another process has moved it in the meantime
 
 
 def sync_tree(folder: Path) -> None:
@@ -173,7 +210,7 @@ def sync(path: Path) -> None:
 def _age_s(path: Path) -> float:
     """Seconds since the last change in a file or folder; 0 if it no longer exists."""
     newest = 0.0
-    for place in (path, *path.rglob("*")):
+    for place in (path, *(path.rglob("*") if is_own_folder(path) else ())):
         try:
             newest = max(newest, place.lstat().st_mtime)
         except OSError:

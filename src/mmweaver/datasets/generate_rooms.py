@@ -21,6 +21,7 @@ from mmweaver.core.atomic_files import atomic_file, atomic_files, create_once, s
 from mmweaver.core.board import Board
 from mmweaver.core.checksums import SUMS_FILE, damages, read_sums, sums_text, write_sums
 from mmweaver.core.errors import InputError
+from mmweaver.core.locks import locked
 from mmweaver.core.optional_packages import need
 from mmweaver.core.output_checks import cannot_write, is_empty, resolved
 from mmweaver.core.radar_config import RadarConfig
@@ -295,7 +296,8 @@ def generate_dataset(
     check_packages(ray_address)
     rooms = plan.rooms()
     if repair:
-        remove_damaged(folder, plan)
+        with locked(folder):
+            remove_damaged(folder, plan)
     open_dataset(folder, plan, config)
     sweep(resolved(folder), again=True)
     missing = [room for room in rooms if not is_done(folder, room.name)]
@@ -310,8 +312,9 @@ def generate_dataset(
                     listener(report)
         names = [room.name for room in rooms]
         if all(is_done(folder, name) for name in names):
-            consolidate_rooms(resolved(folder), names, AXES)
-            write_rooms_card(resolved(folder), names, AXES)
+            with locked(folder):
+                consolidate_rooms(resolved(folder), names, AXES)
+                write_rooms_card(resolved(folder), names, AXES)
     finally:
         sweep(resolved(folder), again=True)
     return reports

@@ -37,7 +37,7 @@ def load_radar(name_or_path: str) -> RadarConfig:
         return options.applied(PRESETS[name_or_path])
     path = Path(name_or_path)
     if path.is_file() and path.suffix.lower() in RADAR_FILES:
-        return RADAR_FILES[path.suffix.lower()](path, options)
+        return options.with_pattern(RADAR_FILES[path.suffix.lower()](path, options))
     what = "is neither .cfg nor .json" if path.is_file() else "is neither a radar preset nor a file"
     raise InputError(
         f"{name_or_path!r} {what}; presets: {', '.join(PRESETS)}; or give a TI .cfg, an mmWave Studio .json or"

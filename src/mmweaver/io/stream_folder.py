@@ -19,13 +19,13 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.core.atomic_files import append_line, atomic_file, staged_folder
+from mmweaver.core.atomic_files import append_line, atomic_file, opened_to_append, staged_folder
 from mmweaver.core.checksums import SUMS_FILE, write_sums
 from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import cannot_write
 from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube
 from mmweaver.core.safe_files.safe_text import parse_json, read_text
-from mmweaver.core.staging import sync
+from mmweaver.core.staging import remove, sync
 from mmweaver.io.dca1000 import words_of
 from mmweaver.io.npz_files import read_radar_npz, write_points_npz, write_pose_npz, write_radar_npz
 from mmweaver.io.result_folder import plain
@@ -165,6 +165,22 @@ class StreamFolder:
         Raises:
             InputError: If it cannot be written.
         """
+        try:
+            self._add(cube, points, poses, adc, said)
+        except BaseException:
+            if not self.parts:  # nothing whole is there
+                for name in (PARTS, "radar.json", META, BIN, LIST):
+                    remove(self.out / name)
+            raise
+
+    def _add(
+        self,
+        cube: RadarCube,
+        points: PointCloud,
+        poses: tuple[PoseSequence, ...],
+        adc: AdcCube | None,
+        said: dict[str, Any],
+    ) -> None:
         if not self.parts:
             self._write_text("radar.json", cube.config.to_json())
             self._write_meta()
@@ -195,7 +211,7 @@ class StreamFolder:
         self.iq_order = self.iq_order or adc.config.lvds_iq_order
         words, self._counts = words_of(adc, iq_order=self.iq_order, counts_per_unit=own)
         try:
-            with (self.out / BIN).open("ab") as file:
+            with opened_to_append(self.out / BIN) as file:
                 file.write(words.tobytes())
                 file.flush()
                 os.fsync(file.fileno())

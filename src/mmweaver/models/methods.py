@@ -5,24 +5,28 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Generic, Protocol, TypeVar, runtime_checkable
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
 from mmweaver.core.assumptions import UsualAssumption
 from mmweaver.core.board import Board
+from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
 from mmweaver.core.registry import Registry
 from mmweaver.core.stages import Stages
+from mmweaver.motion.physiology import Physiology
 from mmweaver.propagation.board_effects import built_radar
 from mmweaver.propagation.diffuse_clutter import seed_of_room
+from mmweaver.propagation.paths import ScenePaths
 from mmweaver.propagation.ray_traced import ASSUMPTIONS, SEVERAL_PEOPLE, Simulator
 from mmweaver.propagation.static_paths import ALL_PATHS, Propagation, RayTracedRoom
 from mmweaver.signal.cube import radar_cube
 
 if TYPE_CHECKING:
-    from mmweaver.models.neural_path_solver import LearnedRoom, ScattererNetwork
+    from mmweaver.models.hypernetwork_rooms import SignalRoom
+    from mmweaver.models.neural_path_solver import LearnedRoom
     from mmweaver.models.scene_tensors import GivenRoom
     from mmweaver.propagation.receiver import BackgroundRecording
 
@@ -32,6 +36,10 @@ LEARNED_NOTE = UsualAssumption(
     "echoes of first order were written by a network trained on simulated rooms, others by physics; phases of surfaces"
     " and skin are sampled"
 )
+HYPERNETWORK_NOTES = {
+    "signal": "the signal was written by a hypernetwork as the paper has it: no board, no noise, no other order",
+    "power": "echoes of first order were written by a hypernetwork as fields of power, no others; phases are sampled",
+}
 ELSEWHERE = (
     "the network was trained with radars at the camera; elsewhere it was measured to be about as near as physics"
     " (docs/several_radars.md)"
@@ -146,6 +154,30 @@ class Physics:
             ),
         )
 
+    def paths(
+        self,
+        scene: Scene,
+        poses: tuple[PoseSequence, ...],
+        config: RadarConfig,
+        *,
+        frame: int,
+        seed: int,
+        background: RadarCube | None = None,
+        board: Board | None = None,
+    ) -> ScenePaths:
+        """The propagation paths of one frame, for a signal that this method made; arguments as in `Method`.
+
+        Args:
+            scene: The room.
+            poses: Motion of each person.
+            config: The radar.
+            frame: Number of the frame.
+            seed: Seed of the signal.
+            background: Background recording of the signal.
+            board: Board of the signal.
+        """
+        return self._prepared.get(scene, config, background, board).paths(poses, frame, seed)
+
     def _prepare(
         self, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None
     ) -> Simulator:
@@ -204,7 +236,10 @@ class Learned:
         with stages("encode the room"):
             room = self._encoded.get(scene, config, background, board)
         with stages("weave the signal"):
-            motions = [FrameMotion.of(pose, config, num_frames, first_frame) for pose in poses]
+            at = scene.radar_pose
+            motions = [
+                FrameMotion.of(pose, config, num_frames, first_frame, Physiology.of(pose, seed), at) for pose in poses
+            ]
             cube, adc = room.signal(
                 motions,
                 seed=scene.radar_pose.noise_seed(seed),
@@ -215,22 +250,64 @@ class Learned:
         several = (SEVERAL_PEOPLE,) if len(poses) > 1 else ()
         moved = () if scene.radar_pose.is_at_camera else (ELSEWHERE,)
         order = _order_notes(self.propagation)
-        assumptions = (LEARNED_NOTE, *order, *moved, *several, *_background_notes(room.background))
-        return Signal(cube=cube, adc=adc, assumptions=assumptions, method="weaver")
+        note = LEARNED_NOTE if self._target is None else HYPERNETWORK_NOTES[self._target]
+        assumptions = (note, *order, *moved, *several, *_background_notes(room.background))
+        name = "weaver" if self._target is None else f"hypernetwork, target {self._target}"
+        return Signal(cube=cube, adc=adc, assumptions=assumptions, method=name)
+
+    def paths(
+        self,
+        scene: Scene,
+        poses: tuple[PoseSequence, ...],
+        config: RadarConfig,
+        *,
+        frame: int,
+        seed: int,
+        background: RadarCube | None = None,
+        board: Board | None = None,
+    ) -> ScenePaths:
+        """The propagation paths of one frame, see `Physics.paths`."""
+        from mmweaver.models.frame_motion import FrameMotion
+        from mmweaver.models.neural_path_solver import LearnedRoom
+
+        room = self._encoded.get(scene, config, background, board)
+        if not isinstance(room, LearnedRoom):
+            raise InputError("weights of --target signal give no propagation paths; take those of a scatterer network")
+        return room.paths([FrameMotion.of(pose, config, 1, frame) for pose in poses])
 
     def _encode(
         self, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None
-    ) -> "LearnedRoom":
-        from mmweaver.models.neural_path_solver import LearnedRoom
+    ) -> "LearnedRoom | SignalRoom":
+        if self._target == "signal":
+            from mmweaver.models.hypernetwork_rooms import SignalRoom
 
+            if background is not None:
+                raise InputError("a hypernetwork of target signal writes the room, too; leave the background out")
+            return SignalRoom(self._network, scene, config)
         given = self._given.get(scene, _board_antennas(board, config), None, None)
-        return LearnedRoom(self._network, given, config, background=background, board=board)
+        if self._target == "power":
+            from mmweaver.models.hypernetwork_rooms import FieldRoom as Room
+        else:
+            from mmweaver.models.neural_path_solver import LearnedRoom as Room
+        return Room(self._network, given, config, background=background, board=board)
 
     @cached_property
-    def _network(self) -> "ScattererNetwork":
+    def _target(self) -> str | None:
+        """Target of the weights of a hypernetwork; None for the network that comes with mmweaver."""
+        from mmweaver.models.weights import read_card
+
+        return None if self.weights is None else read_card(self.weights).target
+
+    @cached_property
+    def _network(self) -> Any:
         from mmweaver.models.weights import load_weights, shipped_weights
 
-        return load_weights(self.weights or shipped_weights())[0]
+        if self._target is None:
+            return load_weights(self.weights or shipped_weights())[0]
+        from mmweaver.models.hypernetwork_rooms import load_hypernetwork
+
+        assert self.weights is not None
+        return load_hypernetwork(self.weights)[0]
 
 
 def _given_room(scene: Scene, config: RadarConfig, propagation: Propagation) -> "GivenRoom":

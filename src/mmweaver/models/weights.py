@@ -23,7 +23,8 @@ from mmweaver.models.scatterer_network import WeaverNetwork
 
 FORMAT = "mmweaver weights"
 FORMAT_VERSION = 1
-POWER_RECIPE = "paper_power"
+SIGNAL, POWER = "signal", "power"  # targets of recipe `hypernetwork`
+EARLIER_RECIPES = {"paper": SIGNAL, "paper_power": POWER}  # which had a recipe each
 SHIPPED = "weaver.safetensors"
 WEIGHTS_FILE = "weights.safetensors"  # in a folder of mmweaver train, and in a repository on the Hub
 
@@ -42,6 +43,12 @@ class WeightsCard:
     mmweaver_version: str
     settings: dict[str, Any] = field(default_factory=dict)  # of the recipe
     tuned_from: str = ""  # sha256 of the tensors that fine-tuning started from
+
+    @property
+    def target(self) -> str | None:
+        """Target of a hypernetwork, signal or power; None for other networks."""
+        target = self.settings.get("target") if self.recipe == "hypernetwork" else EARLIER_RECIPES.get(self.recipe)
+        return target if target in (SIGNAL, POWER) else None
 
 
 def save_weights(file: Path, network: nn.Module, card: WeightsCard, *, half: bool = True) -> None:
@@ -79,11 +86,8 @@ def load_weights(file: Path) -> tuple[WeaverNetwork, WeightsCard]:
         InputError: For files that are damaged, foreign or of another version.
     """
     card, tensors = _read(file)
-    if card.recipe == POWER_RECIPE:
-        raise InputError(
-            f"{file} holds weights of recipe {POWER_RECIPE!r}, which studies alone read; give those of: mmweaver train"
-            " weaver"
-        )
+    if card.target is not None:
+        raise InputError(f"{file} holds weights of recipe {card.recipe!r}; give those of: mmweaver train weaver")
     network = WeaverNetwork(encoder=card.settings.get("encoder", DEFAULT_ENCODER))
     _fill(network, file, tensors)
     return network, card

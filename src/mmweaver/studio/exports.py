@@ -5,11 +5,12 @@ from collections.abc import Callable
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from tempfile import gettempdir
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
 from mmweaver.core.safe_files.regular_files import read_bytes
+from mmweaver.core.staging import remove, staging_path
 from mmweaver.datasets.export import FORMATS, export_result
 from mmweaver.io.npz_files import write_points_npz, write_radar_npz
 from mmweaver.io.result_folder import save_results
@@ -96,9 +97,13 @@ def export(result: Result, kind: str) -> tuple[str, bytes]:
     """
     if kind not in EXPORTS:
         raise InputError(f"unknown format {kind!r}; known: {', '.join(EXPORTS)}")
-    with TemporaryDirectory(prefix="mmweaver-export-") as folder:
-        file = EXPORTS[kind][1](result, Path(folder))
+    folder = staging_path(Path(gettempdir()) / "mmweaver-export")
+    folder.mkdir(mode=0o700)
+    try:
+        file = EXPORTS[kind][1](result, folder)
         return file.name, read_bytes(file, max_bytes=MAX_EXPORT_BYTES)
+    finally:
+        remove(folder)
 
 
 def _save(result: Result, folder: Path, *, pictures: bool = True) -> None:

@@ -9,8 +9,11 @@ import asyncio
 import contextlib
 import hmac
 import os
+import re
 import secrets
+import shutil
 import socket
+import tempfile
 import webbrowser
 from collections.abc import AsyncIterator, Awaitable, Callable
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -24,7 +27,7 @@ from starlette.applications import Starlette
 from starlette.datastructures import UploadFile
 from starlette.exceptions import HTTPException
 from starlette.middleware import Middleware
-from starlette.requests import HTTPConnection, Request
+from starlette.requests import ClientDisconnect, HTTPConnection, Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp, Receive, Scope, Send
@@ -32,10 +35,11 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.safe_text import parse_json
-from mmweaver.studio import exports, uploads
+from mmweaver.studio import exports, sessions, uploads
+from mmweaver.studio.connections import MAX_OPEN, BoundedProtocol, Deadlines, LateError
 from mmweaver.studio.schemas import Form
 from mmweaver.studio.service import Service
-from mmweaver.studio.sessions import Session
+from mmweaver.studio.sessions import Session, remove_abandoned
 from mmweaver.viz.html_page import page_file
 
 MAX_WAITING = 200
@@ -98,6 +102,11 @@ Work = Callable[[Session, dict[str, Any]], Any]
 LOOPBACK = {"127.0.0.1", "localhost", "::1"}
 MAX_JSON_BYTES = 100_000
 MAX_IN_FLIGHT = 2  # unacknowledged chunks of a live stream
+BACKLOG = 2048  # connections that wait to be accepted
+MAX_SENTENCES = 20  # that wait in a live stream
+SOCKET_S = 5.0  # how often an open socket looks whether its session was ended
+LIVE_S = 60.0  # longest time without an acknowledgement
+_PLACES = re.compile(r"\S*\.mmweaver-[0-9a-f]{8}-\d+-\d+-\d+(/upload-[^/\s]*)?/?")  # folders of sessions in messages
 SECURITY = {
     "content-security-policy": "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:;"
     " connect-src 'self' ws: wss:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
@@ -173,6 +182,7 @@ class StudioServer:
 
         @contextlib.asynccontextmanager
         async def lifespan(_: Starlette) -> AsyncIterator[None]:
+            remove_abandoned()
             await self.jobs.run(self.service.warm_up)
             yield
             self.jobs.stop()
@@ -181,8 +191,8 @@ class StudioServer:
         return Starlette(
             routes=routes,
             lifespan=lifespan,
-            exception_handlers={InputError: _refused, BusyError: _busy},
-            middleware=[Middleware(Door, hosts=hosts or LOOPBACK, token=token)],
+            exception_handlers={InputError: _refused, BusyError: _busy, ClientDisconnect: _gone, LateError: _late},
+            middleware=[Middleware(Deadlines), Middleware(Door, hosts=hosts or LOOPBACK, token=token)],
         )
 
     # the page --------------------------------------------------------------------------------------------------------
@@ -193,8 +203,8 @@ class StudioServer:
         return Response(page_file("mmweaver.js"), media_type="text/javascript", headers=SECURITY)
 
     # its calls -------------------------------------------------------------------------------------------------------
-    async def _open(self, _: Request) -> Response:
-        session = self.service.sessions.open()
+    async def _open(self, request: Request) -> Response:
+        session = self.service.sessions.open(request.client.host if request.client else "")
         offered = self.service.offer()
         kinds = [(kind, label) for kind, (label, _) in exports.EXPORTS.items()]
         return JSONResponse({"session": session.id, "exports": kinds, "live": True, "paths": True, **offered})
@@ -203,7 +213,13 @@ class StudioServer:
         """API by path: functions from a session and the request's JSON to bytes for the page, or JSON."""
         service = self.service
         return {
-            "room/{name}": ("GET", lambda own, got: service.room_bytes(own, got["name"], got.get("radar", "awr1843"))),
+            "room/{name}": (
+                "GET",
+                lambda own, got: service.room_bytes(
+                    own, got["name"], got.get("radar", "awr1843"), got.get("range", "")
+                ),
+            ),
+            "rays/{name}": ("GET", lambda own, got: service.rays(own, got["name"], got.get("frame", "0"))),
             "generate": ("POST", lambda own, got: service.generate(own, got["body"])),
             "depth/{name}": ("POST", lambda own, got: uploads.room_with_estimated_depth(own, got["name"])),
             "recording/{name}": ("POST", lambda own, got: service.recording(own, got["name"])),
@@ -215,8 +231,9 @@ class StudioServer:
     def _call(self, work: Work) -> Callable[[Request], Awaitable[Response]]:
         async def answer(request: Request) -> Response:
             session = self._session(request)
-            got = {**request.query_params, **request.path_params, "body": await _json(request)}
-            found = await self._do(request, lambda: work(session, got))
+            with session.answering():
+                got = {**request.query_params, **request.path_params, "body": await _json(request)}
+                found = await self._do(request, lambda: work(session, got))
             return _packed(found) if isinstance(found, bytes) else JSONResponse(found)
 
         return answer
@@ -224,7 +241,8 @@ class StudioServer:
     async def _export(self, request: Request) -> Response:
         session = self._session(request)
         result = session.result(request.path_params["name"])
-        name, content = await self._do(request, lambda: exports.export(result, request.path_params["kind"]))
+        with session.answering():
+            name, content = await self._do(request, lambda: exports.export(result, request.path_params["kind"]))
         headers = {**SECURITY, "content-disposition": f'attachment; filename="{name}"'}
         return Response(content, media_type="application/octet-stream", headers=headers)
 
@@ -233,7 +251,16 @@ class StudioServer:
         length = request.headers.get("content-length", "")
         if not length.isdecimal() or int(length) > uploads.MAX_BYTES:
             raise InputError(f"an upload has at most {uploads.MAX_BYTES // 1_000_000} MB")
-        folder = Path(mkdtemp(prefix="upload-", dir=session.folder))
+        with session.answering(), self.service.sessions.uploading(int(length)):
+            folder = Path(mkdtemp(prefix="upload-", dir=session.folder))
+            try:
+                return JSONResponse(await self._taken(request, session, folder))
+            finally:  # what was read is in memory
+                if not session.needs(folder):
+                    shutil.rmtree(folder, ignore_errors=True)
+
+    async def _taken(self, request: Request, session: Session, folder: Path) -> dict[str, Any]:
+        """Receives the files of an upload and reads them."""
         async with request.form(max_files=uploads.MAX_FILES, max_fields=4) as form:
             radar = form.get("radar")
             files = [sent for sent in form.getlist("files") if isinstance(sent, UploadFile)]
@@ -243,17 +270,22 @@ class StudioServer:
                     while part := await sent.read(1 << 20):
                         file.write(part)
         chosen = self.service.radar_of(session, radar if isinstance(radar, str) else "awr1843")
-        return JSONResponse(await self._do(request, lambda: uploads.take(session, folder, chosen)))
+        return await self._do(request, lambda: uploads.take(session, folder, chosen))
 
     async def _presence(self, socket: WebSocket) -> None:
         """Open for as long as the tab; closing it ends the session."""
         session = await self._accepted(socket)
         if session is None:
             return
-        with contextlib.suppress(WebSocketDisconnect):
-            while True:
-                await socket.receive_text()
-        self.service.end(session)
+        try:
+            while session.is_open:
+                await _said(socket, session)
+            await socket.close(code=1008)
+        except WebSocketDisconnect:
+            pass
+        finally:
+            session.sockets -= 1
+            self.service.end(session)
 
     async def _live(self, socket: WebSocket) -> None:
         """Receives sentences and sends chunks; at most MAX_IN_FLIGHT chunks are unacknowledged."""
@@ -261,23 +293,35 @@ class StudioServer:
         if session is None:
             return
         try:
-            live = self.service.live(session, parse_json(await socket.receive_text(), "the request"))
-            in_flight = 0
-            while True:
-                if in_flight >= MAX_IN_FLIGHT:
-                    said = parse_json(await socket.receive_text(), "the request")
-                    if isinstance(said, dict) and "ack" in said:
-                        in_flight -= 1
-                    else:
-                        live.say(Form.of(said).sentences[0])
-                    continue
-                await socket.send_bytes(await self.jobs.run(live.next_chunk))
-                in_flight += 1
+            await self._stream(socket, session)
         except (InputError, BusyError) as error:
-            await socket.send_json({"error": str(error) or "too many are waiting; try again in a minute"})
-            await socket.close()
+            code = getattr(error, "code", "busy")
+            with contextlib.suppress(WebSocketDisconnect, RuntimeError):  # it may have been closed
+                words = _public(error) or "too many are waiting; try again in a minute"
+                await socket.send_json({"error": words, "code": code})
+                await socket.close()
         except WebSocketDisconnect:
             pass
+        finally:
+            session.sockets -= 1
+
+    async def _stream(self, socket: WebSocket, session: Session) -> None:
+        request = parse_json(await _said(socket, session, LIVE_S), "the request")
+        live = await self.jobs.run(lambda: self.service.live(session, request))
+        in_flight = waiting = 0
+        while session.is_open:
+            if in_flight >= MAX_IN_FLIGHT:
+                said = parse_json(await _said(socket, session, LIVE_S), "the request")
+                if isinstance(said, dict) and "ack" in said:
+                    in_flight, waiting = in_flight - 1, 0
+                elif waiting < MAX_SENTENCES:
+                    live.say(Form.of(said).sentences[0])
+                    waiting += 1
+                else:
+                    raise InputError(f"more than {MAX_SENTENCES} sentences wait; send the next ones later")
+                continue
+            await socket.send_bytes(await self.jobs.run(live.next_chunk))
+            in_flight += 1
 
     async def _accepted(self, socket: WebSocket) -> Session | None:
         """The session that the socket names; without one, the socket is closed."""
@@ -286,7 +330,15 @@ class StudioServer:
         except InputError:
             await socket.close(code=1008)
             return None
-        await socket.accept()
+        if session.sockets >= sessions.MAX_SOCKETS:
+            await socket.close(code=1008)
+            return None
+        session.sockets += 1
+        try:
+            await socket.accept()
+        except BaseException:
+            session.sockets -= 1
+            raise
         return session
 
     # what they share -------------------------------------------------------------------------------------------------
@@ -305,6 +357,31 @@ class StudioServer:
             raise HTTPException(499, "the client left") from None
 
 
+async def _said(socket: WebSocket, session: Session, limit_s: float = float("inf")) -> str:
+    """The next text of a socket; a WebSocketDisconnect for anything else, and at the end of its session."""
+    waited_s = 0.0
+    while True:
+        receiving = asyncio.ensure_future(socket.receive())
+        while not (await asyncio.wait([receiving], timeout=SOCKET_S))[0]:
+            waited_s += SOCKET_S
+            if not session.is_open or waited_s >= limit_s:
+                receiving.cancel()
+                await socket.close(code=1008)
+                raise WebSocketDisconnect(1008)
+        message = receiving.result()
+        text = message.get("text")
+        if isinstance(text, str):
+            return text
+        if message["type"] == "websocket.receive":
+            await socket.close(code=1003)
+        raise WebSocketDisconnect(message.get("code", 1003))
+
+
+def _public(error: Exception) -> str:
+    """A message in one line, without folders of the server."""
+    return _PLACES.sub("", " ".join(str(error).split())).replace(tempfile.gettempdir(), "")
+
+
 async def _json(request: Request) -> Any:
     body = bytearray()
     async for part in request.stream():  # bounded memory
@@ -320,11 +397,21 @@ def _packed(content: bytes) -> Response:
 
 async def _refused(_: Request, error: Exception) -> Response:
     recovery_options: list[Any] = getattr(error, "recovery_options", [])
-    return JSONResponse({"error": " ".join(str(error).split()), "ways_on": recovery_options}, status_code=422)
+    code = getattr(error, "code", InputError.code)
+    words = {"error": " ".join(_public(error).split()), "code": code, "ways_on": recovery_options}
+    return JSONResponse(words, status_code=422)
+
+
+async def _gone(_: Request, __: Exception) -> Response:
+    return Response(status_code=499)  # nobody reads it
+
+
+async def _late(_: Request, __: Exception) -> Response:
+    return JSONResponse({"error": "the request did not come in time"}, status_code=408, headers={"connection": "close"})
 
 
 async def _busy(_: Request, __: Exception) -> Response:
-    return JSONResponse({"error": "too many are waiting; try again in a minute"}, status_code=503)
+    return JSONResponse({"error": "too many are waiting; try again in a minute", "code": "busy"}, status_code=503)
 
 
 class _Announcing(uvicorn.Server):
@@ -375,17 +462,25 @@ def serve(
     address = f"http://{shown}:{port}/" + ("" if token is None else f"?token={token}")
     try:
         studio = StudioServer(Service(rooms, recordings, recognisers), workers=workers)
-        config = uvicorn.Config(
-            studio.app(hosts=set(names), token=token),
-            log_level="warning",
-            ws_max_size=1 << 20,
-            timeout_graceful_shutdown=2,
-            limit_concurrency=400,
-        )
+        config = config_of(studio.app(hosts=set(names), token=token))
         announce("mmweaver studio is warming up ...")
         _Announcing(config, address, announce, open_browser).run(sockets=[bound])
     finally:
         bound.close()
+
+
+def config_of(app: Any) -> uvicorn.Config:
+    """How the studio is served."""
+    return uvicorn.Config(
+        app,
+        http=BoundedProtocol,
+        log_level="warning",
+        ws_max_size=1 << 20,
+        ws_max_queue=4,
+        timeout_graceful_shutdown=2,
+        limit_concurrency=2 * MAX_OPEN,
+        backlog=BACKLOG,
+    )
 
 
 def _bind(host: str, port: int) -> socket.socket:

@@ -3,6 +3,9 @@
 The server queues them.
 """
 
+import ctypes
+import gc
+import sys
 from collections import OrderedDict
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -13,9 +16,11 @@ from typing import Any, Generic, TypeVar
 
 from mmweaver.core.board import Board
 from mmweaver.core.boards import PRESETS, find_board
-from mmweaver.core.errors import InputError, NoRoomError
+from mmweaver.core.errors import InputError, NoRoomError, error_code
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.evaluation.compare_signals import FeatureComparison, compare_signals
+from mmweaver.core.range_window import chosen_range
+from mmweaver.core.records import LANDMARK_KINDS
+from mmweaver.evaluation.compare_signals import compare_signals
 from mmweaver.evaluation.signal_evidence import ComparedSignal
 from mmweaver.models.methods import METHODS
 from mmweaver.motion.language.activities import BY_KEY
@@ -28,14 +33,15 @@ from mmweaver.studio.recordings import check_offered, read_offered
 from mmweaver.studio.schemas import Form
 from mmweaver.studio.sessions import BroughtRoom, Result, Session, Sessions
 from mmweaver.viz.body_in_photo import pack
-from mmweaver.viz.sequence import room_playback
+from mmweaver.viz.sequence import MAX_FRAMES, room_playback
+from mmweaver.viz.theme import evenly_spaced
 from mmweaver.weaver.front_door import Weaver
 from mmweaver.weaver.generation import Generation, Room
 
 DEMO = "demo"
 FIRST_TEXT = "a person walks towards the radar, then waves with the left hand"
 BOARDS = ("typical:0", "typical:1", "typical:2", "ideal")
-_MAX_WEAVERS = 12  # each keeps its last room
+_MAX_WEAVERS = 8  # each keeps its last room
 
 T = TypeVar("T")
 
@@ -76,9 +82,9 @@ class RecoverableError(InputError):
     `recovery_options` are buttons of the page: a label, and the change of the request.
     """
 
-    def __init__(self, message: str, recovery_options: list[dict[str, Any]]):
+    def __init__(self, message: str, recovery_options: list[dict[str, Any]], code: str = InputError.code):
         super().__init__(message)
-        self.recovery_options = recovery_options
+        self.recovery_options, self.code = recovery_options, code
 
 
 @contextmanager
@@ -87,16 +93,27 @@ def recovery_options(asked: Form) -> Iterator[None]:
     try:
         yield
     except NoRoomError as error:
-        ways = [
-            {"label": f"with {radar}", "change": {"radar": radar}} for radar in error.recovery_options.get("radars", ())
-        ]
+        ways: list[dict[str, Any]] = []
+        if error.recovery_options.get("range_m"):
+            near_m, far_m = error.recovery_options["range_m"]
+            label = f"range window {near_m:g} to {far_m:g} m"
+            ways.append({"label": label, "change": {"range": [near_m, far_m]}})
+        radars = error.recovery_options.get("radars", ())
+        ways += [{"label": f"with {radar}", "change": {"radar": radar, "range": None}} for radar in radars]
+        if asked.at:
+            ways.append({"label": "start anywhere free", "change": {"at": None}})
         if asked.room != DEMO:
             ways.append({"label": "in the bundled room", "change": {"room": DEMO}})
-        raise RecoverableError(str(error), ways) from None
+        raise RecoverableError(str(error), ways, error.code) from None
     except InputError as error:
-        if asked.path_m is None:
+        if asked.path_m is not None:
+            way = {"label": "without the path", "change": {"path": None}}
+            raise RecoverableError(str(error), [way], "path") from None
+        kind = next((kind for kind in LANDMARK_KINDS if f"no {kind} was found" in str(error)), None)
+        if kind is None:
             raise
-        raise RecoverableError(str(error), [{"label": "without the path", "change": {"path": None}}]) from None
+        way = {"label": f"show where the {kind} is", "change": {"landmark": kind}}
+        raise RecoverableError(str(error), [way], "no_target") from None
 
 
 class Service:
@@ -118,7 +135,8 @@ class Service:
         for name in self.recognisers.names:
             self.recognisers.get(name)  # one that is damaged is refused at once
         self.sessions = Sessions()
-        self._weavers: OrderedDict[tuple[str, str, str, str], Weaver] = OrderedDict()
+        self._weavers: OrderedDict[tuple[Any, ...], Weaver] = OrderedDict()
+        self._marked: OrderedDict[tuple[Any, ...], Room] = OrderedDict()  # rooms with landmarks that a visitor placed
         self._lock = Lock()
 
     def warm_up(self) -> None:
@@ -143,31 +161,29 @@ class Service:
         }
 
     def room_of(self, session: Session, name: str) -> BroughtRoom:
-        """A room by its id.
-
-        Args:
-            session: The session, for its own rooms.
-            name: Id of one of them or of an offered room.
-
-        Raises:
-            InputError: If it is unknown.
-        """
+        """A room by its id, one of the session's or an offered one. InputError if it is not known."""
         known = self._rooms | session.rooms
         if name not in known:
             raise InputError("this room is not known here; choose another one")
         return known[name]
 
+    def _room(self, session: Session, asked: Form) -> Room:
+        """The room of a request, with the landmarks that came with it; the same object for the same landmarks."""
+        with error_code("room"):
+            room = self.room_of(session, asked.room).room
+        if not asked.landmark:
+            return room
+        key = (session.id, asked.room, *asked.landmark)
+        with self._lock:
+            if key not in self._marked:
+                self._marked[key] = room.with_landmarks(*asked.landmark)
+                while len(self._marked) > _MAX_WEAVERS:
+                    self._marked.popitem(last=False)
+            return self._marked[key]
+
     @staticmethod
     def radar_of(session: Session, name: str) -> RadarConfig:
-        """A radar by its id.
-
-        Args:
-            session: The session, for its own radars.
-            name: Id of one of them, or name of a preset.
-
-        Raises:
-            InputError: If it is unknown.
-        """
+        """A radar by its id, one of the session's, or the name of a preset. InputError if it is not known."""
         if name in session.radars:
             return session.radars[name][1]
         if name not in PRESETS:
@@ -176,16 +192,7 @@ class Service:
 
     @staticmethod
     def board_of(session: Session, name: str, radar: RadarConfig) -> Board:
-        """A board by its id.
-
-        Args:
-            session: The session, for its own boards.
-            name: Id of one of them, "ideal" or "typical:N".
-            radar: The radar that the board is for.
-
-        Raises:
-            InputError: If it is unknown.
-        """
+        """A board by its id, one of the session's, or "ideal" or "typical:N" for a radar. InputError if unknown."""
         if name in session.boards:
             return find_board(session.boards[name][1], radar)
         if name != "ideal" and not name.startswith("typical:"):
@@ -194,30 +201,29 @@ class Service:
 
     @staticmethod
     def motion_of(session: Session, name: str | None) -> MotionClip | None:
-        """A motion uploaded to the session.
-
-        Args:
-            session: The session.
-            name: Id of the motion; None gives None.
-
-        Raises:
-            InputError: If it is no longer kept.
-        """
+        """A motion uploaded to the session; None gives None. InputError if it is not known."""
         if name is not None and name not in session.motions:
             raise InputError("this motion is no longer kept; open its file again")
         return None if name is None else session.motions[name][1]
 
-    def room_bytes(self, session: Session, name: str, radar: str) -> bytes:
+    def _radar(self, session: Session, asked: Form) -> RadarConfig:
+        """The radar of a request, with its range window."""
+        with error_code("range"):
+            return chosen_range(self.radar_of(session, asked.radar), asked.range_m)
+
+    def room_bytes(self, session: Session, name: str, radar: str, window: str = "") -> bytes:
         """A room, packed for the page, with the places where this radar can observe a person.
 
         Args:
             session: The session.
             name: Id of the room.
             radar: Id of the radar.
+            window: Range window, "near,far" in metres; "" for the radar's own.
         """
         label = session.rooms[name].label if name in session.rooms else name
-        range_m = self.radar_of(session, radar).range_m
-        shown = room_playback(self.room_of(session, name).room.scene, label, (float(range_m[0]), float(range_m[-1])))
+        asked = Form.of({"room": name, "radar": radar, "range": window, "text": [FIRST_TEXT]})
+        range_m = self._radar(session, asked).range_m
+        shown = room_playback(self._room(session, asked).scene, label, (float(range_m[0]), float(range_m[-1])))
         return pack(shown.header, shown.arrays)
 
     def generate(self, session: Session, body: Any) -> bytes:
@@ -231,12 +237,15 @@ class Service:
             InputError: If the request cannot be met.
         """
         asked = Form.of(body)
-        room, radar = self.room_of(session, asked.room), self.radar_of(session, asked.radar)
-        weaver, board = self._weaver(asked, radar), self.board_of(session, asked.board_name, radar)
+        room, radar = self.room_of(session, asked.room), self._radar(session, asked)
+        board = self.board_of(session, asked.board_name, radar)
         request = replace(asked.request, motion=self.motion_of(session, asked.motion_id), board=board)
 
         def made(keep_adc: bool = False) -> Generation:
-            return weaver.carry_out(weaver.parsed(replace(request, keep_adc=keep_adc)), room.room)
+            weaver = self._weaver(asked, radar)  # a kept result must not keep a prepared room
+            with error_code("sentence"):
+                parsed = weaver.parsed(replace(request, keep_adc=keep_adc))
+            return weaver.carry_out(parsed, self._room(session, asked))
 
         with recovery_options(asked):
             generation = made()
@@ -253,6 +262,7 @@ class Service:
             meta=generation.meta,
             generation=generation,
             with_samples=lambda: made(keep_adc=True),
+            rays=lambda frame: self._weaver(asked, radar).rays(self._room(session, asked), generation, frame),
         )
         return self._kept(session, result, {"seconds": generation.stages.seconds, **repeated})
 
@@ -266,7 +276,8 @@ class Service:
         Raises:
             InputError: If it is unknown or cannot be read.
         """
-        return self._kept(session, self.recordings.get(name), {})
+        with error_code("recording"):
+            return self._kept(session, self.recordings.get(name), {})
 
     @staticmethod
     def compare(session: Session, a: str, b: str) -> dict[str, Any]:
@@ -286,6 +297,19 @@ class Service:
         """A kept result, packed for the page."""
         return self._packed(session.result(name), name, {})
 
+    @staticmethod
+    def rays(session: Session, name: str, frame: str) -> bytes:
+        """Propagation paths of frame `frame` of a kept result, packed for the page.
+
+        Raises:
+            InputError: If it is no longer kept, was not generated here, or has no such frame.
+        """
+        result = session.result(name)
+        shown = [] if result.cube is None else evenly_spaced(len(result.cube.values), MAX_FRAMES)
+        if result.rays is None or not frame.isdecimal() or not int(frame[:6]) < len(shown):
+            raise InputError("there are propagation paths of generated sequences alone, and for each of their frames")
+        return pack({"kind": "rays"}, result.rays(int(shown[int(frame)])).arrays)
+
     def live(self, session: Session, body: Any) -> Live:
         """Starts a stream in one of the session's rooms.
 
@@ -297,9 +321,9 @@ class Service:
             InputError: If the request cannot be met.
         """
         asked = Form.of(body)
-        radar = self.radar_of(session, asked.radar)
+        radar = self._radar(session, asked)
         board = self.board_of(session, asked.board_name, radar)
-        room = self.room_of(session, asked.room).room
+        room = self._room(session, asked)
         if asked.recogniser is None:
             return Live(self._weaver(asked, radar), room, asked, board)
         recogniser = self.recognisers.get(asked.recogniser)  # learned from the points of a board's firmware
@@ -312,10 +336,12 @@ class Service:
             for key in [key for key in self._weavers if own & set(key)]:
                 del self._weavers[key]
         self.sessions.end(session)
+        trim_memory()
 
     def _kept(self, session: Session, result: Result, more: dict[str, Any]) -> bytes:
         name = session.add(result)
         self.sessions.keep_within_memory()
+        trim_memory(collect=False)
         return self._packed(result, name, more)
 
     @staticmethod
@@ -327,7 +353,7 @@ class Service:
         """A generator for this room, radar, board and method, cached with the prepared room."""
         if asked.method not in METHODS:
             raise InputError(f"unknown method {asked.method!r}; choose one of the list")
-        key = (asked.room, asked.radar, asked.board_name, asked.method)
+        key = (asked.room, asked.radar, asked.board_name, asked.method, asked.range_m)
         with self._lock:
             if key not in self._weavers:
                 self._weavers[key] = Weaver(method=asked.method, radar=radar)
@@ -335,6 +361,14 @@ class Service:
                     self._weavers.popitem(last=False)
             self._weavers.move_to_end(key)
             return self._weavers[key]
+
+
+def trim_memory(*, collect: bool = True) -> None:
+    """Gives freed memory back to the system; glibc would keep it for every thread."""
+    if sys.platform.startswith("linux"):
+        if collect:
+            gc.collect()
+        getattr(ctypes.CDLL(None), "malloc_trim", lambda _: 0)(0)
 
 
 def _sample() -> Room:
@@ -358,24 +392,23 @@ def comparison(a: Result, b: Result) -> dict[str, Any]:
     Raises:
         InputError: If one of them is a point cloud alone, or they have no common ranges.
     """
-    found = compare_signals([_signal(a, "A")], [_signal(b, "B")], names=(f"A: {a.title}", f"B: {b.title}"))
-    return {"text": found.text(), "values": found.to_values(), "rows": [_row(one) for one in found.ranked]}
 
+    def signal(result: Result, name: str) -> ComparedSignal:
+        if result.cube is None:
+            raise InputError(f"{name} is a point cloud alone; numbers need a signal on both sides")
+        adc = None if result.generation is None else result.generation.adc
+        return ComparedSignal(name=result.title, cube=result.cube, adc=adc, points=result.points, meta=result.meta)
 
-def _signal(result: Result, name: str) -> ComparedSignal:
-    if result.cube is None:
-        raise InputError(f"{name} is a point cloud alone; numbers need a signal on both sides")
-    adc = None if result.generation is None else result.generation.adc
-    return ComparedSignal(name=result.title, cube=result.cube, adc=adc, points=result.points, meta=result.meta)
-
-
-def _row(one: FeatureComparison) -> dict[str, Any]:
-    assert one.difference is not None
-    unit = one.feature.unit
-    return {
-        "title": one.feature.title,
-        "effect": one.difference.effect_size,
-        "a": one.a.text(unit),
-        "b": one.b.text(unit),
-        "gives_away": one.gives_away,
-    }
+    found = compare_signals([signal(a, "A")], [signal(b, "B")], names=(f"A: {a.title}", f"B: {b.title}"))
+    rows = [
+        {
+            "title": one.feature.title,
+            "effect": one.difference.effect_size,
+            "a": one.a.text(one.feature.unit),
+            "b": one.b.text(one.feature.unit),
+            "gives_away": one.gives_away,
+        }
+        for one in found.ranked
+        if one.difference is not None
+    ]
+    return {"text": found.text(), "values": found.to_values(), "rows": rows}

@@ -1,21 +1,29 @@
-"""Sessions of the studio: each has its own rooms, results and folder, which are removed when it ends."""
+"""Sessions of the studio: each has its own rooms, results and folder, which are removed when it ends.
 
+There are MAX_SESSIONS at most. One more ends another: of the client that has the most, one that was never used, else
+the one unused for longest; those whose request is being answered stay. What a session keeps is bounded, too.
+"""
+
+import contextlib
 import secrets
 import shutil
 import tempfile
-from collections import OrderedDict
-from collections.abc import Callable
+from collections import Counter, OrderedDict
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from threading import Lock
 from time import monotonic
+from typing import Any
 
 from mmweaver.core.board import Board
-from mmweaver.core.errors import InputError
+from mmweaver.core.errors import InputError, error_code
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud, PoseSequence, RadarCube
+from mmweaver.core.staging import staging_path, sweep
 from mmweaver.motion.mocap.clip import MotionClip
+from mmweaver.propagation.rays import Rays
 from mmweaver.viz.points_playback import point_log_playback
 from mmweaver.viz.sequence import Playback, make_playback
 from mmweaver.weaver.generation import Generation, Room
@@ -23,7 +31,23 @@ from mmweaver.weaver.generation import Generation, Room
 MAX_SESSIONS = 100
 MAX_RESULTS = 6  # per session; the oldest are dropped first
 MAX_RESULT_BYTES = 1_000_000_000  # cubes and samples of all sessions
+MAX_BROUGHT = 8  # rooms, radars, boards, motions and photos of a session, of each kind; the oldest are dropped first
+MAX_UPLOAD_BYTES = 1_000_000_000  # of all uploads that are being received or read
+MAX_SOCKETS = 4  # open WebSockets of a session
 UNUSED_S = 1800.0  # idle time after which a session that was not closed ends
+
+
+FOLDER = "mmweaver-studio"
+
+
+def remove_abandoned() -> None:
+    """Removes the folders of sessions whose server was killed."""
+    sweep(Path(tempfile.gettempdir()), again=True)
+
+
+def _file_of(value: Any) -> Path | None:
+    """The file that something brought is still read from: that of a photo, or of a named motion."""
+    return value if isinstance(value, Path) else getattr(value[-1], "file", None) if isinstance(value, tuple) else None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,6 +61,7 @@ class Result:
     frame_period_s: float = 0.1
     radar: str = ""
     generation: Generation | None = None
+    rays: Callable[[int], Rays] | None = None  # propagation paths of a frame
     with_samples: Callable[[], Generation] | None = None  # generates the same sequence with its ADC samples
 
     @property
@@ -78,9 +103,11 @@ class BroughtRoom:
 class Session:
     """One tab of a browser."""
 
-    def __init__(self) -> None:
+    def __init__(self, client: str = "") -> None:
         self.id = secrets.token_urlsafe(16)
-        self.folder = Path(tempfile.mkdtemp(prefix="mmweaver-studio-"))  # readable by this user alone
+        self.client = client
+        self.folder = staging_path(Path(tempfile.gettempdir()) / FOLDER)  # what a killed server leaves is recognized
+        self.folder.mkdir(mode=0o700)
         self.rooms: dict[str, BroughtRoom] = {}  # by id
         self.radars: dict[str, tuple[str, RadarConfig]] = {}  # by id: file name and radar
         self.boards: dict[str, tuple[str, Board]] = {}  # by id: file name and board
@@ -89,7 +116,33 @@ class Session:
         self.pinned: str | None = None  # the result that the next ones are compared with
         self.photos: dict[str, Path] = {}  # by id: pictures that came without depth
         self.used_s = monotonic()
+        self.is_used = False  # whether it has asked for anything
+        self.running = 0  # requests that are being answered
+        self.sockets = 0
         self.is_open = True
+
+    @contextlib.contextmanager
+    def answering(self) -> Iterator[None]:
+        """A request of the session is being answered."""
+        self.running += 1
+        try:
+            yield
+        finally:
+            self.running -= 1
+            self.used_s, self.is_used = monotonic(), True
+
+    def bring(self, kept: dict[str, Any], name: str, value: Any) -> None:
+        """Keeps something that was uploaded; the oldest of its kind are dropped beyond MAX_BROUGHT."""
+        kept[name] = value
+        while len(kept) > MAX_BROUGHT:
+            oldest = _file_of(kept.pop(next(iter(kept))))
+            if oldest is not None:
+                oldest.unlink(missing_ok=True)
+
+    def needs(self, folder: Path) -> bool:
+        """Whether a photo that waits for its depth, or a motion, is still read from a folder."""
+        files = map(_file_of, (*self.photos.values(), *self.motions.values()))
+        return any(folder in file.parents for file in files if file is not None)
 
     def add(self, result: Result) -> str:
         """Keeps a result and returns its id; the oldest are dropped beyond MAX_RESULTS."""
@@ -113,7 +166,8 @@ class Session:
             InputError: If it is not of this session, or no longer kept.
         """
         if name not in self.results:
-            raise InputError("this result is no longer kept; generate it again")
+            with error_code("gone"):
+                raise InputError("this result is no longer kept; generate it again")
         return self.results[name]
 
     def keep(self, name: str) -> dict[str, str]:
@@ -136,21 +190,52 @@ class Sessions:
     def __init__(self) -> None:
         self._open: dict[str, Session] = {}
         self._lock = Lock()
+        self._uploading = 0  # bytes
 
-    def open(self) -> Session:
-        """Opens a session, after closing idle ones.
+    @contextlib.contextmanager
+    def uploading(self, num_bytes: int) -> Iterator[None]:
+        """Reserves room for an upload.
 
         Raises:
-            InputError: If there are too many.
+            InputError: If too much is being uploaded.
+        """
+        with self._lock:
+            if self._uploading + num_bytes > MAX_UPLOAD_BYTES:
+                raise InputError("others are uploading at the moment; try again in a minute")
+            self._uploading += num_bytes
+        try:
+            yield
+        finally:
+            with self._lock:
+                self._uploading -= num_bytes
+
+    def open(self, client: str = "") -> Session:
+        """Opens a session, after ending idle ones and, if there are too many, another one.
+
+        Args:
+            client: Address of the client.
+
+        Raises:
+            InputError: If there are too many, and all are being answered.
         """
         with self._lock:
             for session in [one for one in self._open.values() if monotonic() - one.used_s > UNUSED_S]:
-                self._end(session)
+                if not session.running:
+                    self._end(session)
             if len(self._open) >= MAX_SESSIONS:
-                raise InputError(f"the studio has {MAX_SESSIONS} open sessions; close a tab and load the page again")
-            session = Session()
+                self._end(self._least_used())
+            session = Session(client)
             self._open[session.id] = session
             return session
+
+    def _least_used(self) -> Session:
+        """The session that makes room for another."""
+        idle = [one for one in self._open.values() if not one.running]
+        if not idle:
+            raise InputError(f"the studio is answering {MAX_SESSIONS} sessions; try again in a minute")
+        counts = Counter(one.client for one in idle)
+        most = max(counts.values())
+        return min((one for one in idle if counts[one.client] == most), key=lambda one: (one.is_used, one.used_s))
 
     def get(self, name: str) -> Session:
         """A session by its id.
@@ -163,7 +248,8 @@ class Sessions:
         """
         session = self._open.get(name)
         if session is None:
-            raise InputError("this session has ended; load the page again")
+            with error_code("session"):
+                raise InputError("this session has ended; load the page again")
         session.used_s = monotonic()
         return session
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.core.board import read_board
-from mmweaver.core.errors import InputError
+from mmweaver.core.errors import InputError, error_code
 from mmweaver.core.optional_packages import is_installed
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_text import parse_json, read_json
@@ -22,13 +22,16 @@ from mmweaver.weaver.generation import Room
 
 MAX_BYTES = 300_000_000  # of one upload
 MAX_FILES = 200
+NO_DEPTH = "photo_without_depth"  # code of the error
 MAX_DEPTH = 4  # folders within one another
+MAX_NAME_CHARACTERS, MAX_NAME_BYTES = 80, 200
 PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".heic")
 DEPTHS = (".npy", ".tif", ".tiff")
 MOTIONS = (".npz", ".npy")
 MESHES = (".glb", ".ply", ".obj")
 
 
+@error_code("upload")
 def take(session: Session, folder: Path, radar: RadarConfig) -> dict[str, Any]:
     """Interprets the files of a folder, and adds the result to a session.
 
@@ -56,7 +59,7 @@ def take(session: Session, folder: Path, radar: RadarConfig) -> dict[str, Any]:
     motion = next((file for name, file in files.items() if name.endswith(".bvh")), None)
     if motion is not None or (len(files) == 1 and next(iter(files)).endswith(MOTIONS)):
         file = motion or next(iter(files.values()))
-        return _named(session.motions, "motion", file, read_motion(file))
+        return _named(session, session.motions, "motion", file, read_motion(file))
     mesh = next((file for name, file in files.items() if name.endswith(MESHES)), None)
     if mesh is not None:
         return _mesh(session, mesh, files)
@@ -89,15 +92,18 @@ def place_of(folder: Path, said: str) -> Path:
     """
     parts = [part for part in said.replace("\\", "/").split("/") if part.strip(".")]
     for part in parts[-1 - MAX_DEPTH : -1]:
-        folder = folder / safe_name(part, set())
+        folder = folder / safe_name(part, {file.name for file in folder.iterdir() if not file.is_dir()})
         folder.mkdir(exist_ok=True)
     return folder / safe_name(parts[-1] if parts else "file", {file.name for file in folder.iterdir()})
 
 
 def safe_name(name: str, taken: set[str]) -> str:
-    """A plain file name from what a browser sent: no folders, no leading dots, at most 80 characters, not yet taken."""
+    """A plain file name from what a browser sent: no folders, no leading dots, neither too long nor taken."""
     plain = "".join(one if one.isalnum() or one in "._-" else "_" for one in name.replace("\\", "/").rsplit("/", 1)[-1])
-    plain = plain.lstrip(".")[-80:] or "file"
+    plain = (
+        plain.lstrip(".")[-MAX_NAME_CHARACTERS:].encode("utf-8", "ignore")[-MAX_NAME_BYTES:].decode("utf-8", "ignore")
+    )
+    plain = plain or "file"
     while plain in taken:
         plain = f"{secrets.token_hex(2)}-{plain}"
     return plain
@@ -139,12 +145,14 @@ def _photo(session: Session, files: dict[str, Path], folder: Path) -> dict[str, 
 def _drop_depth(session: Session, photo: Path) -> RecoverableError:
     """Offers to estimate the depth if the package is installed, otherwise names what to install."""
     name = secrets.token_urlsafe(6)
-    session.photos[name] = photo
+    session.bring(session.photos, name, photo)
     said = "a photo alone is not enough: bring its depth too (depth.png in millimetres, or .npy in metres)"
     if not is_installed("transformers"):
-        return RecoverableError(f"{said}; or pip install 'mmweaver[pretrained]', and a model will estimate it", [])
+        return RecoverableError(
+            f"{said}; or pip install 'mmweaver[pretrained]', and a model will estimate it", [], NO_DEPTH
+        )
     button = {"label": "estimate the depth (model downloaded once)", "change": {"estimate": name}}
-    return RecoverableError(said, [button])
+    return RecoverableError(said, [button], NO_DEPTH)
 
 
 def _photographed(session: Session, files: RoomFiles) -> dict[str, Any]:
@@ -171,7 +179,7 @@ def _room(session: Session, found: Room, /, **given: Path | str | None) -> dict[
     arguments = [repr(first[1]), *(f"{name}={value!r}" for name, value in more)]
     call = f"{'open_room' if first[0] == 'room' else 'read_room'}({', '.join(arguments)})"
     name, label = secrets.token_urlsafe(6), f"your room {len(session.rooms) + 1}"
-    session.rooms[name] = BroughtRoom(label=label, options=options, call=call, read=lambda: found)
+    session.bring(session.rooms, name, BroughtRoom(label=label, options=options, call=call, read=lambda: found))
     return {"kind": "room", "id": name, "label": label}
 
 
@@ -179,12 +187,12 @@ def _radar_or_board(session: Session, file: Path) -> dict[str, Any]:
     is_json = file.suffix.lower() == ".json"
     content = read_json(file) if is_json else None
     if isinstance(content, dict) and "board_version" in content:
-        return _named(session.boards, "board", file, read_board(file))
-    return _named(session.radars, "radar", file, load_radar(str(file)))
+        return _named(session, session.boards, "board", file, read_board(file))
+    return _named(session, session.radars, "radar", file, load_radar(str(file)))
 
 
-def _named(kept: dict[str, Any], kind: str, file: Path, value: Any) -> dict[str, Any]:
+def _named(session: Session, kept: dict[str, Any], kind: str, file: Path, value: Any) -> dict[str, Any]:
     """Keeps the contents of a file under a new id, with the file's name."""
     name = secrets.token_urlsafe(6)
-    kept[name] = file.name, value
+    session.bring(kept, name, (file.name, value))
     return {"kind": kind, "id": name, "label": file.name}

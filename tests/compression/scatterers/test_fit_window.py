@@ -56,11 +56,3 @@ def test_frames_without_shared_chirps_stay_separate():
     assert overlap_hop(lying) == 0
     odd = replace(cube, grid=replace(CubeGrid.of(SMALL, 6), frame_time_s=np.arange(6) * 3.3 * SMALL.loop_period_s))
     assert overlap_hop(odd) == 0
-
-
-def test_without_overlap_the_working_frames_are_the_centred_cube():
-    cube = crowd(num_frames=2)
-    fit_window = FitWindow.of(SMALL, 2, 0)
-    working = fit_window.working(cube.values)
-    assert np.allclose(np.abs(working.numpy()), np.abs(cube.values), rtol=1e-5, atol=1e-9)
-    assert error_db(fit_window.cube_values(working), cube.values) < -100

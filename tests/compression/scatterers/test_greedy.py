@@ -1,8 +1,7 @@
 import numpy as np
 
 from mmweaver.compression.scatterers.fit_window import FitWindow
-from mmweaver.compression.scatterers.fitting import Beams, Greedy, peaks
-from mmweaver.signal.point_response import PointResponse
+from mmweaver.compression.scatterers.fitting import Greedy, peaks
 from tests.compression.echoes import SMALL, direction_of, exact_point
 
 
@@ -39,7 +38,3 @@ def test_beams_in_a_few_cells_find_what_beams_in_all_cells_do():
     assert np.count_nonzero(some) < every.size
     top = np.sort(peaks(every).ravel())[-3:]
     assert np.allclose(np.sort(peaks(some).ravel())[-3:], top)
-
-
-def test_an_array_without_aperture_has_one_beam():
-    assert len(Beams.covering(PointResponse(SMALL).axes(), 0).direction) == 1

@@ -58,25 +58,6 @@ def test_frames_of_few_scatterers_and_of_none_are_refined_as_if_alone():
         assert (found.amplitude[frame] != 0).sum() == count
 
 
-def test_no_step_increases_the_error_and_padding_stays():
-    truth = random_points(6)
-    target = RESPONSE.render(truth, AXES)
-    start = shaken(truth, 0.6)
-    start.amplitude[1, 3:] = 0
-    start = Points(
-        range_bin=start.range_bin, doppler_bin=start.doppler_bin, direction=start.direction, amplitude=start.amplitude
-    )
-    energy = (target - RESPONSE.render(start, AXES)).abs().square().flatten(1).sum(1)
-    points = start
-    damping = Damping.fresh(2)
-    for _ in range(6):
-        points, residual = refined(points, target, RESPONSE, AXES, damping, steps=1, largest=50)
-        now = residual.abs().square().flatten(1).sum(1)
-        assert (now <= energy * (1 + 1e-5)).all()
-        energy = now
-    assert (points.amplitude[1, 3:] == 0).all()
-
-
 def test_a_step_equals_that_of_the_explicit_jacobian():
     """One nearly undamped step against least squares on a Jacobian by finite differences.
 

@@ -9,7 +9,7 @@ from PIL import Image
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files import safe_pictures
-from mmweaver.core.safe_files.safe_pictures import ORIENTATION, open_picture, read_animation
+from mmweaver.core.safe_files.safe_pictures import open_picture, read_animation
 
 PIXELS = np.random.default_rng(0).integers(0, 255, (40, 60, 3), dtype=np.uint8)
 
@@ -28,20 +28,6 @@ def test_other_decoders_are_out_of_reach(tmp_path: Path, kind: str):
     Image.fromarray(PIXELS).save(tmp_path / "a.png", kind)
     with pytest.raises(InputError, match=r"a\.png"):
         open_picture(tmp_path / "a.png")
-
-
-@pytest.mark.parametrize("kind", ["PNG", "TIFF"])
-@pytest.mark.parametrize("orientation", range(1, 9))
-def test_pictures_are_upright(tmp_path: Path, orientation: int, kind: str):
-    """Turned by the tag, whichever the kind: the tag's own definition, row and column of each corner."""
-    exif = Image.Exif()
-    exif[ORIENTATION] = orientation
-    Image.fromarray(PIXELS).save(tmp_path / "a", kind, exif=exif)
-    found = open_picture(tmp_path / "a")
-    turned = [PIXELS, PIXELS[:, ::-1], PIXELS[::-1, ::-1], PIXELS[::-1], PIXELS.swapaxes(0, 1), np.rot90(PIXELS, -1),
-              PIXELS[::-1, ::-1].swapaxes(0, 1), np.rot90(PIXELS)]  # fmt: skip
-    assert np.array_equal(np.asarray(found.image), turned[orientation - 1])
-    assert found.orientation == orientation
 
 
 def test_sizes_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
@@ -72,12 +58,3 @@ def test_a_damaged_tiff_is_refused_without_messages(tmp_path: Path, capfd: pytes
         with pytest.raises(InputError):
             open_picture(tmp_path / name)
     assert capfd.readouterr().err == ""
-
-
-def test_an_animation_is_read(tmp_path: Path):
-    frames = [Image.fromarray(np.full((40, 60, 3), value, np.uint8)) for value in (0, 255)]
-    frames[0].save(tmp_path / "a.gif", save_all=True, append_images=frames[1:])
-    assert [int(picture.mean()) for picture in read_animation(tmp_path / "a.gif")] == [0, 255]
-    (tmp_path / "a.gif").write_bytes(b"GIF89a")
-    with pytest.raises(InputError, match=r"no \.gif"):
-        read_animation(tmp_path / "a.gif")

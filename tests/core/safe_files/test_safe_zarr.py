@@ -59,14 +59,6 @@ def test_what_is_not_as_asked_is_refused(store: Path, read: Callable[[ZarrFolder
         read(open_zarr(store))
 
 
-def test_one_axis_has_one_length_in_all_arrays(store: Path):
-    put_array(zarr.open_group(store, mode="a"), "person", np.zeros(3, int), ("sequence",))
-    found = open_zarr(store)
-    found.numbers("seed", ("sequence",))
-    with pytest.raises(InputError, match=r"person.*3.*seed.*4"):
-        found.numbers("person", ("sequence",))
-
-
 def changed(store: Path, name: str, **values: Any) -> None:
     file = store / name / "zarr.json"
     file.write_text(json.dumps(json.loads(file.read_text()) | values))

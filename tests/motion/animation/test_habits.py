@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mmweaver.motion.animation.controls import Habits, habits_of
+from mmweaver.motion.animation.controls import habits_of
 from mmweaver.motion.empty_floor import act_out
 
 TIME_S = np.arange(-0.5, 20.5, 1 / 120)
@@ -24,11 +24,6 @@ def test_an_uneven_step_starts_and_ends_as_planned_and_never_goes_back():
         rate = np.gradient(reached_s, TIME_S)
         assert np.abs(np.diff(rate)).max() < 0.05, "the tempo changes smoothly"
         assert rate[~outside].min() < 0.4, "there is a pause"
-
-
-def test_short_steps_are_even():
-    assert habits_of(1).warped(TIME_S, 0.0, 3.0) is TIME_S
-    assert Habits().warped(TIME_S, 0.0, 20.0) is TIME_S
 
 
 def test_twenty_seconds_of_waving_are_not_periodic():

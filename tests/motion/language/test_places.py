@@ -1,46 +1,24 @@
 """Places of a sentence: what the words mean, and where the planner puts them."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import Landmark
+from mmweaver.core.safe_files.safe_text import read_toml
 from mmweaver.motion.language.places import Place, mark_places, place_of, room_of
 from mmweaver.motion.language.sentence import parse
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.named_places import cells_of, settled
 from rooms import room
 
+PLACES = read_toml(Path(__file__).with_name("places.toml"))
 TABLE = Landmark(kind="table", position_m=np.array([0.0, 2.0, -0.5]), approach_m=(0.0, 1.4), facing_rad=np.pi / 2)
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("a person stands near the window", "near the window"),
-        ("a man waves behind the sofa", "behind the couch"),
-        ("a person stands two metres away", "2 m from the radar"),
-        ("stands at a distance of 1.5 m from the radar and waves", "1.5 m from the radar"),
-        ("a person waves on the left", "on the left"),
-        ("a woman sits in the middle of the room", "in the middle"),
-        ("a person waves two metres away on the left", "2 m from the radar, on the left"),
-        ("a person waves on the left two metres away", "on the left, 2 m from the radar"),
-        ("a person claps on the right near the window", "near the window, on the right"),
-        ("a man on the left waves to a woman on the right", "on the left"),
-        ("a tall woman in the background claps", "in the background"),
-        ("a person waves in the corner", "in the corner"),
-        ("a person in the corner waves", "in the corner"),
-        ("a person walks to the left corner", "in the corner, on the left"),
-        ("a person claps between the table and the wall", "between the table and the wall"),
-        ("a person sits between the two chairs", "between two chairs"),
-        ("a person stands in the doorway", "in the doorway"),
-        ("a person claps next to the wall", "near the wall"),
-        ("a person stands with the back against the wall", "against the wall"),
-        ("a person walks into the middle of the room", "in the middle"),
-        ("a person crawls under the table", "under the table"),
-        ("a person waves outside", "outside"),
-    ],
-)
+@pytest.mark.parametrize(("text", "words"), PLACES.items())
 def test_places_are_read(text: str, words: str):
     found = [step.place for step in parse(text).steps if step.place is not None]
     assert [place.words for place in found] == [words]

@@ -11,9 +11,8 @@ from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.animation.step_context import StepContext
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.places import Place
-from mmweaver.motion.language.plan import NOT_DONE, ClauseRecord, Shape, Side, Step, Way
-from mmweaver.motion.language.postures import add_shown_text, doing, in_turn, steps_of_each
-from mmweaver.motion.language.timing import plan_motion
+from mmweaver.motion.language.plan import Shape, Side, Step, Way
+from mmweaver.motion.language.postures import doing, in_turn, steps_of_each
 
 WALK, WAVE = Step(lower="walk"), Step(upper="wave")
 
@@ -69,18 +68,6 @@ def test_order_and_repetitions_of_several_steps() -> None:
     assert in_turn([WALK, WALK, WAVE]) == "walking, and again, then waving with one hand repeatedly"
 
 
-def test_a_step_that_no_clause_names_counts_with_the_next_one() -> None:
-    rises = Step(lower="stand_up")
-    steps = [replace(WALK, clauses=(0,)), rises, replace(WAVE, clauses=(1, 2))]
-    assert steps_of_each(4, steps) == [steps[:1], steps[1:], steps[2:], []]
-
-
-def test_a_clause_that_shares_its_step_shows_that_and_one_that_is_not_done_nothing() -> None:
-    lost, shared = ClauseRecord("waves", NOT_DONE, "no activity in it is known"), ClauseRecord("at a walk")
-    records = add_shown_text([shared, ClauseRecord("goes"), lost], [replace(WALK, clauses=(1,))])
-    assert [record.shown for record in records] == ["walking", "walking", ""]
-
-
 def _acted(step: Step) -> np.ndarray:
     """Angles of both arms (n, 2, 4) in radians of a step of three seconds on the spot."""
     time_s = np.arange(0.0, 3.0, 1 / 30)
@@ -103,14 +90,6 @@ def test_the_hands_that_are_said_are_those_that_move(hand: str) -> None:
         assert list(moved) == said, words
 
 
-def test_what_is_cut_is_not_said_to_be_shown() -> None:
-    records = plan_motion("a person waves ten times, then bows", duration_s=3.0).clauses
-    assert records[0].shown == "waving with one hand six times"
-    assert records[1].shown == ""
-    (waves,) = plan_motion("a person waves ten times politely", duration_s=2.0).clauses
-    assert waves.how.startswith(f"is shown as {waves.shown}; 'politely' is not shown")
-
-
 def test_every_activity_has_words() -> None:
     for key, activity in BY_KEY.items():
         words = doing(Step(upper=key) if activity.hands else Step(lower=key))
@@ -130,9 +109,3 @@ def test_a_step_of_several_clauses_counts_with_those_that_have_no_other() -> Non
     assert steps_of_each(3, again) == [again[:1], again[1:2], again[2:]]
     twice = [replace(WALK, clauses=numbers) for numbers in ((0,), (0, 1), (0, 2), (0, 1, 2), (0, 2), (0, 1, 2))]
     assert steps_of_each(3, twice) == [twice[:1], twice[1:2], twice[2:]]
-
-
-def test_steps_with_others_between_them_are_not_in_a_row() -> None:
-    walks, bows = replace(WALK, clauses=(0,)), Step(lower="bow", clauses=(1,))
-    records = add_shown_text([ClauseRecord("walks"), ClauseRecord("bows")], [walks, bows, walks])
-    assert [record.shown for record in records] == ["walking, later walking", "then bowing once"]

@@ -33,40 +33,6 @@ def test_default_two_seconds_hold_a_walk_and_sitting_down():
     assert min(spans("walks to the left, then sits down", 2.0)) > 0.8
 
 
-def test_a_part_of_one_movement_is_shown():
-    assert spans("squats", 0.6)[0] > 1.0
-
-
-@pytest.mark.parametrize(
-    ("text", "duration_s", "how"),
-    [
-        ("she bows", 0.7, "only its beginning is shown in 0.7 s"),
-        ("she falls forward", 0.8, "only its beginning is shown in 0.8 s"),
-        ("she waves", 0.1, "only its beginning is shown in 0.1 s"),
-        ("she jogs on the spot", 0.1, "only its beginning is shown in 0.1 s"),
-        ("walks two metres", 0.6, "only its beginning is shown in 0.6 s"),
-        ("she waves for ten seconds", 2.0, "2.0 of 10.0 s"),
-        ("she waves for ten seconds", 0.3, "only its beginning is shown in 0.3 s"),
-        ("she sits for ten seconds", 0.1, "0.1 of 10.0 s"),
-        ("does ten jumping jacks", 1.0, "only the beginning of the first of 10 times is shown in 1.0 s"),
-    ],
-)
-def test_one_movement_alone_is_not_done_where_it_is_cut(text: str, duration_s: float, how: str):
-    plan = schedule(parse(text), duration_s)
-    assert plan.clauses[0].status == "approximated"
-    assert plan.clauses[0].how.endswith(how)
-    assert how in plan.notes[-1]
-
-
-def test_a_walk_that_is_cut_to_less_than_a_step_is_the_beginning_of_one():
-    cut, short = (schedule(parse(text), 0.2).steps[0] for text in ("walks for ten seconds", "walks"))
-    assert (cut.lower, cut.seconds, cut.end_s) == (short.lower, 0.0, short.end_s)
-
-
-def test_a_posture_is_whole_in_any_moment():
-    assert schedule(parse("she sits"), 0.05).clauses[0].status == "done"
-
-
 @pytest.mark.parametrize(
     "text", ["bows", "jumps forward", "falls forward", "does ten jumping jacks", "stands up", "squats"]
 )
@@ -100,18 +66,7 @@ def test_a_short_sentence_is_repeated_in_a_long_time():
     assert len(plan_motion("waves", 10.0).steps) == 1  # goes on
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "turns around",
-        "sits down",
-        "kneels down",
-        "gets up from the floor",
-        "bows",
-        "raises the left hand",
-        "waves twice",
-    ],
-)
+@pytest.mark.parametrize("text", ["turns around", "sits down", "gets up from the floor", "waves twice"])
 def test_what_is_done_slowly_takes_longer(text):
     slowly, usual, quickly = (plan_motion(f"a person {text}{how}").duration_s for how in (" slowly", "", " quickly"))
     assert quickly < 0.9 * usual

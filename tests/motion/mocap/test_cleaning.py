@@ -63,19 +63,6 @@ def test_a_t_pose_in_front_is_cut_off_where_the_motion_jumps():
     assert re.search("4 frames .*walk", note)
 
 
-def test_a_t_pose_that_is_left_by_moving_stays_and_is_said():
-    angle = np.linspace(0, 1.2, 90)
-    rotations = np.zeros((90, 22, 3))
-    rotations[:, joint("left_shoulder"), 2] = -angle
-    rotations[:, joint("right_shoulder"), 2] = angle
-    lowered = forward(rotations, np.zeros((90, 3)), MEAN_OFFSET_M)
-    lowered = np.stack([lowered[..., 0], -lowered[..., 2], lowered[..., 1]], axis=-1)
-    joints, notes = cut_t_pose(lowered, FPS, "arms")
-    assert len(joints) == 90
-    assert "--motion-set start=" in notes[0]
-    assert cut_t_pose(walk(), FPS, "walk") == (pytest.approx(walk()), ())
-
-
 def test_joints_in_another_order_are_noticed():
     check_bones(walk(), "walk")
     with pytest.raises(InputError, match="not those"):

@@ -95,10 +95,3 @@ def test_as_recorded_moves_nothing():
     k = int(np.argmin(np.abs(motion.pose.time_s)))
     np.testing.assert_allclose(motion.pose.joints_m[k], recorded.joints_m[0], atol=1e-9)
     assert "used unchanged" in motion.assumptions[-1]
-
-
-def test_who_sits_in_the_recording_is_said():
-    seated = MotionClip(joints_m=walk(60.0, 2.0, "a person sits"), fps=60.0, label="sits")
-    motion = place_clip(seated, room(), duration_s=1.0, seed=0, range_window_m=WINDOW_M)
-    assert "no furniture" in motion.assumptions[-1]
-    assert not place_clip(clip(), room(), duration_s=1.0, seed=0, range_window_m=WINDOW_M).assumptions

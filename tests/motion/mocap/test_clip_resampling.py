@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from mocap_files import walk
 
-from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import BONES
-from mmweaver.motion.mocap.clip import MotionClip, check_lasts, low_passed, resampled_clip
+from mmweaver.motion.mocap.clip import MotionClip, low_passed, resampled_clip
 
 TRUTH_FPS = 120.0
 
@@ -57,19 +56,3 @@ def test_jitter_is_taken_out_and_the_motion_is_not_late():
     kept = MotionClip(joints_m=noisy.joints_m, fps=120.0, label="walk", has_jitter=False)
     np.testing.assert_array_equal(low_passed(kept), noisy.joints_m)
     np.testing.assert_array_equal(low_passed(clip(20.0)), walk(20.0))
-
-
-def test_the_last_frame_lasts_too_and_no_longer():
-    whole = clip(20.0)
-    assert whole.duration_s == pytest.approx(2.0)
-    _, joints = resampled_clip(whole, 2.0)
-    assert np.isfinite(joints).all()
-    assert figures(joints)[1] < 1.6 * figures(walk(TRUTH_FPS))[1]
-    with pytest.raises(InputError, match=r"2 s, 2\.1 s"):
-        check_lasts(whole, 2.1)
-
-
-def test_two_frames_are_a_motion():
-    joints = walk(20.0)[:2]
-    _, dense = resampled_clip(MotionClip(joints_m=joints, fps=20.0, label="step"), 0.1)
-    assert np.isfinite(dense).all()

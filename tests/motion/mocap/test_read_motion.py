@@ -8,16 +8,7 @@ import pytest
 from mocap_files import walk, write_bvh, y_up
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.skeleton import JOINT_NAMES, joint
 from mmweaver.motion.mocap.read_motion import read_motion
-from tests.motion.mocap.test_joint_names import CONVENTIONS
-
-# where the 38 joints of the collection have a joint of ours
-CMU_JOINTS = {
-    "pelvis": 0, "left_hip": 2, "left_knee": 3, "left_ankle": 4, "left_foot": 5, "right_hip": 8, "right_knee": 9,
-    "right_ankle": 10, "right_foot": 11, "spine1": 14, "spine2": 15, "neck": 17, "head": 18, "left_shoulder": 21,
-    "left_elbow": 22, "left_wrist": 23, "right_shoulder": 30, "right_elbow": 31, "right_wrist": 32,
-}  # fmt: skip
 
 
 def shape_of(joints: np.ndarray) -> np.ndarray:
@@ -46,25 +37,6 @@ def test_units_axes_and_kinds(tmp_path: Path, kind: str, up: str, unit: float):
     assert any("upward axis" in note for note in clip.notes)
 
 
-@pytest.mark.parametrize("kind", ["npz", "bvh"])
-def test_bones_of_a_clip_of_the_cmu_collection_have_their_metres(tmp_path: Path, kind: str):
-    """The collection's own unit in .bvh, metres in the arrays of its 38 joints."""
-    path, joints = tmp_path / f"clip.{kind}", walk(fps=120.0)[:120]
-    if kind == "npz":
-        positions = np.zeros((len(joints), 38, 3), np.float16)
-        for name, number in CMU_JOINTS.items():
-            positions[:, number] = y_up(joints)[:, joint(name)]
-        np.savez(path, names=np.array(["walk"]), lengths=np.array([120]), pos=positions, parents=np.zeros(38, int))
-    else:
-        names = tuple(CONVENTIONS["cmu"].get(name, name) for name in JOINT_NAMES)
-        write_bvh(path, y_up(joints) / 0.0564444, names=names, fps=120.0, order="ZYX")
-    got = read_motion(path).joints_m
-    for start, end in (("left_hip", "left_knee"), ("right_knee", "right_ankle"), ("left_elbow", "left_wrist")):
-        length_m, own_m = (np.linalg.norm(of[:, joint(end)] - of[:, joint(start)], axis=-1) for of in (got, joints))
-        np.testing.assert_allclose(np.median(length_m), np.median(own_m), atol=0.01)
-        assert 0.2 < np.median(length_m) < 0.5
-
-
 def test_what_is_said_wins(tmp_path: Path):
     np.save(tmp_path / "child.npy", walk() * 1.2)
     clip = read_motion(tmp_path / "child.npy", fps=30.0, unit="0.5", up="z")
@@ -77,21 +49,6 @@ def test_a_mirrored_file_is_put_right(tmp_path: Path):
     clip = read_motion(tmp_path / "unity.npy", fps=60.0, unit="m", up="z")
     np.testing.assert_allclose(clip.joints_m, walk())
     assert "mirrored" in clip.notes[0]
-
-
-def test_a_t_pose_counts_into_the_first_frame(tmp_path: Path):
-    spread = walk()[:1].copy()
-    for side, sign in (("left", 1), ("right", -1)):
-        across = spread[0, joint("left_shoulder")] - spread[0, joint("right_shoulder")]
-        across = sign * across * [1, 1, 0] / np.linalg.norm(across[:2])
-        spread[0, joint(f"{side}_elbow")] = spread[0, joint(f"{side}_shoulder")] + 0.28 * across
-        spread[0, joint(f"{side}_wrist")] = spread[0, joint(f"{side}_elbow")] + 0.26 * across
-        spread[0, joint(f"{side}_knee")] = spread[0, joint(f"{side}_hip")] - [0, 0, 0.41]
-        spread[0, joint(f"{side}_ankle")] = spread[0, joint(f"{side}_knee")] - [0, 0, 0.41]
-    np.save(tmp_path / "walk.npy", np.concatenate([spread, walk()]))
-    clip = read_motion(tmp_path / "walk.npy", fps=60.0, up="z")
-    assert clip.first_frame == 1
-    np.testing.assert_allclose(clip.joints_m, walk())
 
 
 def test_what_cannot_be_read_is_refused_in_one_line(tmp_path: Path):

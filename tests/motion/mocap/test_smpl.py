@@ -9,7 +9,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import PARENTS, joint
 from mmweaver.motion.mocap.axes import is_reflected, rotate_z_up
 from mmweaver.motion.mocap.clip import body_height
-from mmweaver.motion.mocap.smpl import MEAN_OFFSET_M, forward, rate_of, read_smpl
+from mmweaver.motion.mocap.smpl import MEAN_OFFSET_M, forward, read_smpl
 
 HERE = Path("poses.npz")
 
@@ -96,10 +96,3 @@ def test_what_is_no_pose_is_refused():
         read_smpl(poses() | {"trans": np.zeros((4, 3))}, HERE)
     with pytest.raises(InputError, match="no frames"):
         read_smpl({"poses": np.zeros((0, 72)), "trans": np.zeros((0, 3))}, HERE)
-
-
-def test_rates():
-    assert rate_of({"mocap_frame_rate": np.array(59.94)}, HERE) == pytest.approx(59.94)
-    assert rate_of({"fps": np.array([30])}, HERE) == 30.0
-    assert rate_of({"mocap_framerate": np.array(0.0)}, HERE) is None
-    assert rate_of({"fps": np.array("fast")}, HERE) is None

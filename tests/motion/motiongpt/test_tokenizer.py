@@ -31,12 +31,6 @@ def test_published_names_and_shapes():
     assert len(state) == 2 * (2 + 14) + 2 * (3 + 14) + 1
 
 
-def test_dilations_begin_with_the_widest():
-    model = MotionTokenizer(TokenizerConfig(width=8, code_width=8, codes=4))
-    dilations = [block.conv1.dilation[0] for block in model.encoder.model[2][1].model]
-    assert dilations == [9, 3, 1]
-
-
 def test_four_frames_a_token():
     model = MotionTokenizer(TokenizerConfig(width=8, code_width=8, codes=4))
     model.quantizer.codebook.normal_()

@@ -43,15 +43,6 @@ def _before_a_board(height_m: float, away_m: float) -> Scene:
     return dataclasses.replace(scene, photo=photo)
 
 
-def test_a_margin_counts_what_is_near():
-    obstacles = CollisionMap(_before_a_board(1.1, 2.0))
-    scene = obstacles.scene
-    pose = standing_person((0.0, 2.2, scene.floor_z_m), seconds=0.3)
-    gap = [margin for margin in np.arange(0.0, 0.2, 0.01) if obstacles.penetration_m(pose, margin_m=float(margin)) > 0]
-    assert gap
-    assert gap[0] > 0.0
-
-
 def test_thighs_may_sink_into_the_seat_but_not_into_the_table_before_it():
     """The same board: under the sitter at the height of a seat; before the belly at that of a table."""
     chair = seat(y_m=2.0)

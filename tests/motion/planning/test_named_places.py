@@ -8,7 +8,6 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import Landmark, Plane
 from mmweaver.motion.compose import compose
-from mmweaver.motion.empty_floor import act_out
 from mmweaver.motion.language.places import Place
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.planning.floor_map import FloorMap
@@ -68,10 +67,6 @@ def test_between_two_things_is_on_the_way_from_one_to_the_other():
             cells_of(place, floor)
 
 
-def test_the_doorway_is_at_the_door():
-    assert np.hypot(*(cells_of(Place("in", "door"), _floor()) - [0.8, 2.6]).T).max() <= 0.8
-
-
 @pytest.mark.parametrize("text", ["waves under the table", "crawls under the table", "walks outside", "waves outside"])
 def test_nobody_is_shown_under_a_table_or_outside(text: str):
     floor = _floor(BACK)
@@ -90,10 +85,3 @@ def test_walks_end_at_the_middle_and_in_the_corner(text: str, goal_m: tuple[floa
     start, *_, end = made.pose.joints_m[:, 0, :2]
     assert np.hypot(*(end - goal_m)) < within_m
     assert np.hypot(*(end - start)) > 0.3
-
-
-def test_without_a_photo_it_is_said_that_there_is_no_corner():
-    made = act_out("a person waves in the corner")
-    assert any("no corner" in note for note in made.assumptions)
-    assert made.clauses[0].status == "approximated"
-    assert act_out("a person walks outside").pose.joints_m.size

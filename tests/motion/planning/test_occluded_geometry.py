@@ -7,7 +7,6 @@ import pytest
 
 from mmweaver.core.records import CameraIntrinsics, Plane, RgbdPhoto, Scene
 from mmweaver.motion.planning.occluded_geometry import (
-    below_tops,
     extended_to_floor,
     occluded_along,
     occluded_share,
@@ -45,11 +44,6 @@ def test_legs_stand_under_hidden_corners():
     assert np.allclose(sorted({round(float(x), 1) for x in np.abs(legs[:, 0])}), [0.5, 0.6])
     assert legs[:, 2].max() < FLOOR_Z_M + 0.7
     assert legs[:, 2].min() < FLOOR_Z_M + 0.1
-
-
-def test_no_legs_where_the_camera_looks_through_or_nothing_is_a_table():
-    assert len(table_legs(_with_table(4.5))) == 0
-    assert table_legs(room()).shape == (0, 3)
 
 
 def _before_a_rim(width_m: float, thick_m: float = 0.04, *, above_m: float = 0.02) -> Scene:
@@ -109,14 +103,6 @@ def test_a_way_behind_a_thing_is_one_that_the_camera_does_not_see():
     assert hidden[2, 0] == 0.0
 
 
-def test_under_a_top_may_be_anything_that_is_not_seen_through():
-    top = np.array([[0.0, 2.5, FLOOR_Z_M + 0.7]])
-    below = below_tops(_with_table(2.0), top)
-    assert np.ptp(below[:, 2]) > 0.5
-    assert below[:, 2].max() < FLOOR_Z_M + 0.7
-    assert len(below_tops(_with_table(4.5), top)) == 0
-
-
 def test_a_top_goes_on_behind_the_chairs_that_hide_a_part_of_it():
     """Two parts of a level top 2 m away and below the camera; between them something stands 1.2 m away, or nothing."""
     lens = CameraIntrinsics(fx=200.0, fy=200.0, cx=159.5, cy=119.5, width=320, height=240)
@@ -142,9 +128,3 @@ def test_a_table_s_legs_are_pillars_and_a_seat_under_it_is_none():
     assert len(legs) > 0
     assert np.abs(legs[:, 0] - 0.5).max() < 0.06
     assert len(upright_structures(scene, np.concatenate([top, seat]))) == 0
-
-
-def test_the_whole_rectangle_of_a_top_is_taken_where_it_is_hidden():
-    seen = np.array([[0.0, 2.85, FLOOR_Z_M + 0.7]])
-    assert table_tops(_with_table(1.0), seen)[:, 1].min() < 2.15
-    assert len(table_tops(_with_table(4.5), seen)) <= 1

@@ -44,19 +44,6 @@ def test_it_goes_round_what_stands_between():
         assert floor.can_stand(way).all()
 
 
-def test_ways_are_free_together_as_they_are_alone():
-    floor = FloorMap(room(boxes=((-0.6, 0.5, 1.9, 2.1),)), WINDOW_M, 1.75)
-    rng = np.random.default_rng(0)
-    starts, ends = floor.walkable_m[rng.integers(len(floor.walkable_m), size=(2, 200))]
-    gaps = ends - starts
-    alone = [
-        floor.free_length_m(start, float(np.arctan2(y, x)), float(np.hypot(x, y))) >= np.hypot(x, y) - 1e-6
-        for start, (x, y) in zip(starts, gaps.tolist(), strict=True)
-    ]
-    assert 20 < sum(alone) < 180
-    assert floor.are_free_ways(starts, ends).tolist() == alone
-
-
 def test_what_the_room_lacks_is_refused_with_what_it_has():
     scene = dataclasses.replace(room(seats=(seat(),)), landmarks=(DOOR, dataclasses.replace(DOOR, kind="table")))
     with pytest.raises(InputError, match=r"no window .*a door, a seat, a table"):
@@ -66,14 +53,6 @@ def test_what_the_room_lacks_is_refused_with_what_it_has():
     with pytest.raises(InputError, match="--landmark window=X,Y"):
         _placed(scene, "window")
     assert _placed(scene, "desk").path  # a desk is a table
-
-
-def test_without_a_photo_the_way_leads_anywhere_and_says_so():
-    plan = drop_targets(_plan("door"))
-    assert [step.target for step in plan.steps] == ["", ""]
-    note = "for 'walks to the door': without a photo there is no door; the walk leads where there is room"
-    assert plan.notes == (note,)
-    assert drop_targets(plan) == plan
 
 
 @pytest.mark.parametrize(

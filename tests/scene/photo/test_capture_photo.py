@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PIL import Image
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CameraIntrinsics
@@ -43,16 +42,6 @@ def test_colours_are_reprojected_from_the_colour_camera(folder: Path, index: int
     red = read_capture_photo(folder, index).photo.rgb[30, :, 0] > 120
     edge = int(np.argmin(red))
     assert edge == pytest.approx(LENS.cx + 0.059 * LENS.fx / depth_m, abs=1)
-
-
-def test_an_own_picture_replaces_the_video(folder: Path):
-    (folder / "realsense" / "color.avi").unlink()
-    Image.new("RGB", WIDE[::-1], (9, 8, 7)).save(folder / "own.png")
-    photo = read_capture_photo(folder, 0, folder / "own.png").photo
-    assert (photo.rgb == (9, 8, 7)).all()
-    Image.new("RGB", (64, 64)).save(folder / "own.png")
-    with pytest.raises(InputError, match="color_config"):
-        read_capture_photo(folder, 0, folder / "own.png")
 
 
 def test_a_camera_that_was_turned(folder: Path):

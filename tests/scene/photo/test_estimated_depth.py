@@ -28,8 +28,3 @@ def test_models_of_relative_depth_are_refused(tmp_path: Path):
         estimate_depth(RGB, models.depth_anything(tmp_path / "relative", "relative"))
     with pytest.raises(InputError, match="no metric depth"):
         estimate_depth(RGB, models.segformer(tmp_path / "segformer"))
-
-
-def test_measured_depth_is_for_models_that_take_it(tmp_path: Path):
-    with pytest.raises(InputError, match="measured depth"):
-        estimate_depth(RGB, models.depth_anything(tmp_path / "model"), measured_m=np.ones((6, 10)))

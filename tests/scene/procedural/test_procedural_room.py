@@ -10,7 +10,6 @@ from mmweaver.core.radar_pose import RadarPose
 from mmweaver.propagation.paths import Interaction
 from mmweaver.propagation.ray_traced import Simulator
 from mmweaver.scene.procedural.arrangement import KINDS, MIN_FREE_M2, MIN_WALKABLE_M2
-from mmweaver.scene.procedural.parts import Boxes
 from mmweaver.scene.procedural.procedural_room import ProceduralRoom, make_room
 from studies.scene.room_contact import signed_distance_m
 
@@ -33,10 +32,6 @@ def room(request: pytest.FixtureRequest) -> ProceduralRoom:
     kind, number = request.param
     seed, layout = SEEDS_AND_LAYOUTS[number]
     return make_room(kind, layout, seed)
-
-
-def _rows(boxes: Boxes, rows: np.ndarray) -> Boxes:
-    return Boxes(centre_m=boxes.centre_m[rows], half_m=boxes.half_m[rows], yaw_rad=boxes.yaw_rad[rows])
 
 
 def test_nothing_overlaps(room: ProceduralRoom):

@@ -39,28 +39,3 @@ def test_own_numbers_are_defined_by_a_json(path: Path):
     path.with_suffix(".json").write_text(json.dumps({"3": "windowpane, window", "4": "wall-brick"}))
     mask = read_class_file(path, 64, 48)
     assert (mask.index == mask.names.index("window-other")).all()
-
-
-@pytest.mark.parametrize(
-    ("table", "message"),
-    [
-        ("{", "no JSON"),
-        ("[1]", "not a JSON object"),
-        ('{"3": "gobbledygook"}', "not a class"),
-        ('{"4": "bed"}', "class number 3"),
-    ],
-)
-def test_bad_tables(path: Path, table: str, message: str):
-    Image.fromarray(np.full((48, 64), 3, np.uint8)).save(path)
-    path.with_suffix(".json").write_text(table)
-    with pytest.raises(InputError, match=message):
-        read_class_file(path, 64, 48)
-
-
-def test_other_pictures_are_refused(path: Path):
-    Image.fromarray(np.zeros((48, 64, 3), np.uint8)).save(path)
-    with pytest.raises(InputError, match="mode RGB"):
-        read_class_file(path, 64, 48)
-    Image.fromarray(np.full((48, 64), 200, np.uint8)).save(path)
-    with pytest.raises(InputError, match="class number 200"):
-        read_class_file(path, 64, 48)

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 import torch
 
+from mmweaver.models.power_field import NUM_WRITTEN
+from mmweaver.models.power_network import PowerNetwork
 from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.training.network_training import TrainingRecipe
 from studies.network.ablated_network import PARTS
@@ -24,8 +26,6 @@ from studies.network.ablation import (
     with_one_code,
 )
 from studies.network.ablation_variants import VARIANTS, WHOLE, AblationVariant
-from studies.paper.power_field import NUM_WRITTEN
-from studies.paper.power_network import PowerNetwork
 
 pytest.importorskip("zarr")
 pytestmark = pytest.mark.usefixtures("blank_training_pictures")

@@ -3,6 +3,8 @@
 Greedy selection of new scatterers: matched-filter peaks of the residual.
 """
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -247,6 +249,9 @@ NOISE_CELLS = 10_000  # sample size for the median noise power
 MAX_GROUP = 160  # scatterers that are solved for jointly
 
 
+Progress = Callable[[int, int, float], object]  # stage, stages, error in dB
+
+
 @dataclass(frozen=True, kw_only=True)
 class FitRecipe:
     """Budget and effort of a fit.
@@ -268,19 +273,20 @@ class FitRecipe:
     most_noise: float | None = None  # upper bound of the noise power per cell, where it is known
 
 
-def fitted(target: Tensor, fit_window: FitWindow, recipe: FitRecipe) -> Layers:
+def fitted(target: Tensor, fit_window: FitWindow, recipe: FitRecipe, progress: Progress | None = None) -> Layers:
     """Least-squares approximation of working frames by layers.
 
     Args:
         target: Working frames (frame, range, doppler, antenna) in centred phase, complex64.
         fit_window: Fit window of these frames.
         recipe: Budget and effort.
+        progress: Called with stage, number of stages and error in dB.
 
     Returns:
         Scatterers, static layer, antenna gains and noise power.
     """
     with torch.no_grad():
-        return _Fit(target, fit_window, recipe).run()
+        return _Fit(target, fit_window, recipe).run(progress)
 
 
 class _Fit:
@@ -301,15 +307,19 @@ class _Fit:
         self.refinements = 0
         self._update_static()
 
-    def run(self) -> Layers:
+    def run(self, progress: Progress | None = None) -> Layers:
         """Runs all stages and returns the layers."""
         recipe = self.recipe
+        energy = float(np.sum(np.abs(self.target) ** 2, dtype=np.float64)) if progress else 0.0
         for stage in range(1, recipe.stages + 1):
             if recipe.num_values is not None and stage - 1 >= DENSE_SHARE * recipe.stages:
                 self.active_beams = self._worthwhile_beams()
                 self._update_static()
             self._fill(round(self._max_points() * (stage / recipe.stages) ** recipe.growth))
             self._refine(1)
+            if progress is not None:
+                error = float(np.sum(np.abs(self.residual) ** 2, dtype=np.float64))
+                progress(stage, recipe.stages, 10 * math.log10(max(error / energy, 1e-30)))
         self._refine(recipe.last_steps)
         return Layers(
             points=compact(self.points.points()),
@@ -326,7 +336,8 @@ class _Fit:
             return recipe.num_points
         static = static_values(self.active_beams, self.static.size) if recipe.with_static else 0
         gains = 2 * len(self.calibration) if recipe.with_calibration else 0
-        return min(recipe.num_points, (recipe.num_values - static - gains - 1) // values_of_point(self.response))
+        left = recipe.num_values - static - gains - 1
+        return max(0, min(recipe.num_points, left // values_of_point(self.response)))
 
     @property
     def _num_points(self) -> int:

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from io import BufferedReader
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -160,6 +160,26 @@ def _unknown(path: Path) -> str:
 
 def _too_large(path: Path) -> str:
     return f"{path} is too large; make it smaller than {MAX_PIXELS / 1e6:.0f} million pixels"
+
+
+@contextlib.contextmanager
+def safe_decoders() -> Iterator[None]:
+    """Context in which pictures that a library opens, such as textures of a mesh, have the limits of `read_picture`."""
+    from PIL import Image
+
+    opened = Image.open
+
+    def open_safely(file: Any, mode: Any = "r", formats: Any = None) -> Any:
+        image = opened(file, mode, FORMATS if formats is None else formats)
+        if image.width * image.height > MAX_PIXELS:
+            raise ValueError("a picture in it is too large")
+        return image
+
+    Image.open = cast("Any", open_safely)
+    try:
+        yield
+    finally:
+        Image.open = opened
 
 
 @contextlib.contextmanager

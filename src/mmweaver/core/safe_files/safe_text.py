@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,14 @@ from mmweaver.core.safe_files.regular_files import MEGABYTE, foreign_errors, rea
 MAX_TEXT_BYTES = 64 * MEGABYTE
 MAX_JSON_BYTES = 16 * MEGABYTE
 MAX_DEPTH = 50  # nesting of lists and objects; mmWeaver's own files stay below 10
+MAX_KEYS = 50_000  # parts of the keys of a TOML file; each takes a kilobyte while it is parsed
+_TOML_WORDS = re.compile(
+    r'"""(?:[^"\\]|\\.|"(?!""))*"{3,5}|'
+    r"'''(?:[^']|'(?!''))*'{3,5}|"
+    r'"(?:[^"\\\n]|\\.)*"|'
+    r"'[^'\n]*'|#[^\n]*|[^\s\"'#.=,\[\]{}]+|[.=,\[\]{}\n]",
+    re.DOTALL,
+)
 MAX_DIGITS = 64  # of an integer; a float can represent its magnitude
 
 
@@ -88,9 +97,27 @@ def read_toml(path: Path | str, *, max_bytes: int = MEGABYTE) -> dict[str, Any]:
 
     text = read_text(path, max_bytes=max_bytes)
     with foreign_errors(path, "no TOML ({reason}); write lines such as: frames = 20"):
+        _check_toml_keys(text)
         content = tomllib.loads(text, parse_float=_float)
         _check_content(content)
     return content
+
+
+def _check_toml_keys(text: str) -> None:
+    """Raises ValueError for dotted keys that are too deep or too many: tomllib takes memory by the square of a key."""
+    parts = total = 0
+    for word in _TOML_WORDS.finditer(text):
+        kind = word[0]
+        if kind == ".":
+            parts += 1
+            if parts > MAX_DEPTH:
+                raise ValueError(f"a key has more than {MAX_DEPTH} parts")
+        elif kind in "=]":
+            parts, total = 0, total + parts + 1
+        elif kind in ",[{}\n":
+            parts = 0
+        if total > MAX_KEYS:
+            raise ValueError(f"it has more than {MAX_KEYS} keys")
 
 
 def _check_content(content: Any) -> None:

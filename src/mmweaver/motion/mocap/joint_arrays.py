@@ -80,6 +80,7 @@ JOINT_KEYS = ("joints_m", "joints", "positions", "keypoints3d", "pos")
 NAME_KEYS = ("joint_names", "names")
 CMU_FPS = 120.0
 CMU_NAMES = {int(index): name for index, name in SKELETONS["cmu"].items()}
+MAX_FRAMES = 200_000  # half an hour at 100 frames per second; 0.6 GB while it is read
 MOTION_X, MOTION_X_FPS = 322, 30.0  # numbers per frame: root, body, hands, face, translation, shape
 SMPL_JOINTS = (24, 45, 52, 55, 127, 144)  # of SMPL, SMPL-H and SMPL-X, with and without landmarks
 NORMALISED_BELOW_M = 0.25  # features with a lower mean root height must be normalised
@@ -98,10 +99,13 @@ def read_npy(path: Path) -> RawMotion:
     Raises:
         InputError: If the array has another shape or type.
     """
-    values = safe_arrays.read_npy(path)
+    values = safe_arrays.read_npy(path, mapped=True)
     if values.dtype.kind not in "fiu":
         raise InputError(f"{path} holds values of type {values.dtype}; a motion has real numbers, saved alone")
-    values = values.astype(float)
+    if max(values.shape[:2], default=0) > MAX_FRAMES:  # the second, of a batch
+        raise InputError(f"{path} has shape {values.shape}; a motion has 2 to {MAX_FRAMES} frames")
+    with np.errstate(all="ignore"):  # what does not fit is refused with its range
+        values = values.astype(float)
     if values.shape[:1] == (1,) and (values.ndim == 4 or values.shape[2:] == (NUM_FEATURES,)):
         values = values[0]  # a batch of one
     if values.ndim == 2 and values.shape[1] == NUM_FEATURES:
@@ -148,6 +152,8 @@ def read_npz(path: Path, clip: str | None = None, body_model: Path | None = None
             f" ({', '.join(JOINT_KEYS)}) are among them"
         )
     names = next((tuple(map(str, arrays[name])) for name in NAME_KEYS if name in arrays), None)
+    if len(arrays[key].shape) and len(arrays[key]) > MAX_FRAMES:
+        raise InputError(f"{path} has {len(arrays[key])} frames; a motion has 2 to {MAX_FRAMES}")
     positions = real_numbers(path, key, arrays[key])
     if names is None:
         positions, names = _check_22(positions, path), JOINT_NAMES

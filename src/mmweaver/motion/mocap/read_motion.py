@@ -18,11 +18,10 @@ from mmweaver.motion.mocap.bvh import read_bvh
 from mmweaver.motion.mocap.c3d import read_c3d
 from mmweaver.motion.mocap.cleaning import check_bones, cut_t_pose, fill_gaps
 from mmweaver.motion.mocap.clip import MotionClip, RawMotion
-from mmweaver.motion.mocap.joint_arrays import read_npy, read_npz
+from mmweaver.motion.mocap.joint_arrays import MAX_FRAMES, read_npy, read_npz
 from mmweaver.motion.mocap.joint_names import to_22
 
 FPS_LIMITS = (1.0, 2000.0)
-MAX_FRAMES = 1_000_000
 MAX_UNITS = 1e7  # 10 km in millimetres
 KINDS = ".bvh, .c3d, .npy (22 joints, HumanML3D, MDM, Motion-X) or .npz (AMASS, SMPL, CMU, joints)"
 

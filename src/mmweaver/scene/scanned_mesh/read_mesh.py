@@ -12,7 +12,9 @@ from jaxtyping import Float, Int, UInt8
 from mmweaver.core.errors import InputError
 from mmweaver.core.optional_packages import need
 from mmweaver.core.safe_files.regular_files import MEGABYTE, check_exists, foreign_errors, read_bytes
+from mmweaver.core.safe_files.safe_pictures import safe_decoders
 from mmweaver.core.shapes import Array, Faces
+from mmweaver.scene.scanned_mesh.glb_header import check_glb
 
 SUFFIXES = (".glb", ".ply", ".obj")
 MAX_BYTES = 500 * MEGABYTE
@@ -53,7 +55,9 @@ def read_mesh(path: Path) -> ColouredMesh:
         raise InputError(f"{path} is no mesh that is read; give one of {', '.join(SUFFIXES)}")
     content = read_bytes(path, max_bytes=MAX_BYTES)
     logging.getLogger("trimesh").setLevel(logging.CRITICAL)  # problems raise InputError or are ignored
-    with foreign_errors(path, "no mesh ({reason}); save it as GLB, PLY or OBJ with triangles"):
+    with foreign_errors(path, "no mesh ({reason}); save it as GLB, PLY or OBJ with triangles"), safe_decoders():
+        if suffix == ".glb":
+            check_glb(content)
         loaded: Any = trimesh.load_scene(
             BytesIO(content),
             file_type=suffix[1:],
@@ -101,7 +105,11 @@ def _part(part: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray | None, str]:
     name = getattr(material, "name", None) or part.metadata.get("name") or ""
     colours = None
     if getattr(visual, "defined", False):
-        of_vertices = np.asarray(visual.to_color().vertex_colors if visual.kind == "texture" else visual.vertex_colors)
+        try:
+            coloured = visual.to_color() if visual.kind == "texture" else visual
+            of_vertices = np.asarray(coloured.vertex_colors)
+        except Exception:  # a texture that is not read
+            of_vertices = np.empty(0)
         if of_vertices.shape == (len(part.vertices), 4):
             colours = of_vertices[np.asarray(part.faces), :3].mean(axis=1)
     return np.asarray(part.vertices, float), np.asarray(part.faces, np.int64), colours, str(name)[:80]

@@ -9,7 +9,6 @@ from mmweaver.core.skeleton import joint
 from mmweaver.motion.empty_floor import RADAR_HEIGHT_M, act_out
 
 HANDS = ["left_wrist", "right_wrist"]
-SIDES = [("left", "right"), ("right", "left")]
 
 
 @cache

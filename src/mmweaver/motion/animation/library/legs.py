@@ -1,7 +1,7 @@
 """Legs on the spot: kicks, raised legs, balancing, lunges, stairs, crouching, yoga, rehabilitation exercises.
 
 The latter are those of MARS (An and Ogras, 2021). The ranges of the joints were chosen by hand; those of side lunges,
-squats and front lunges after inspection of its first subject (studies/motion/mars_exercises.py).
+squats and front lunges after inspection of its first subject.
 """
 
 import numpy as np
