@@ -24,6 +24,8 @@ def training_lines(model: "Recogniser", out: Path) -> list[str]:
         "moving points per frame: "
         + ", ".join(f"{label} {count:g}" for label, count in meta["moving_points_a_frame"].items()),
     ]
+    if substitute := meta["task"]["substitute"]:
+        text.append(f"  {substitute}")
     if "labelled_windows" in meta:
         text.append(f"with {meta['labelled_windows']} windows of labelled recordings")
     if "unlabelled_windows" in meta:

@@ -187,7 +187,7 @@ class SequenceRecipe:
             "frame_rate_hz": task.recordings.frame_rate_hz,
             "once": task.recordings.has_single_performances,
             "radar": parse_json(task.radar.to_json(), "the radar"),
-            "firmware": asdict(task.firmware),
+            "firmware": {name: value for name, value in asdict(task.firmware).items() if name != "substitute"},
         }
         return json.dumps(values, sort_keys=True) + "\n"
 

@@ -265,6 +265,7 @@ def train_recogniser(
         "options": asdict(options),
         "task": {
             "radar": task.radar.name,
+            "substitute": task.firmware.substitute,
             "activities": {label: list(lines) for label, lines in task.activities.items()},
             "mount": asdict(task.mount),
             "background": task.background and task.background.name,

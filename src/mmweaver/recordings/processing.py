@@ -24,7 +24,7 @@ from mmweaver.recordings.plausibility import implausible
 from mmweaver.recordings.read_recording import Recording, as_config, read_recording, without_board
 from mmweaver.scene.photo.capture_photo import photo_folder, photo_times_s
 from mmweaver.signal.cube import remove_static
-from mmweaver.signal.detection import check_points, detect, needs_adc
+from mmweaver.signal.detection import check_points, detect, needs_adc, substitutes
 from mmweaver.viz.feature_page import draw_micro_doppler, draw_people, draw_slow_time
 from mmweaver.viz.figure_data import FigureData
 from mmweaver.viz.preview import PREVIEWS
@@ -163,7 +163,7 @@ def process_recording(
         **radar_meta(cube.config),
         "inputs": {name: _digest(file) for name, file in recording.files.items()},
         **({} if recording.packets is None else _packets_meta(recording.path, recording.packets)),
-        "assumed": [*_assumptions(recording), *recording.config.notes],
+        "assumed": [*_assumptions(recording), *recording.config.notes, *substitutes(points, firmware)],
     }
     return ProcessedRecording(adc=recording.adc, cube=cube, points=cloud, meta=meta, stages=stages, analysis=analysis)
 
