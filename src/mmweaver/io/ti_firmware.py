@@ -2,7 +2,8 @@
 
 Reference: mmWave SDK User Guide, "Configuration (.cfg) File Format": cfarCfg, peakGrouping, clutterRemoval,
 multiObjBeamForming. Demos without cfarCfg of that form (3D People Tracking and Counting: dynamicRACfarCfg, a CFAR on a
-Capon range-azimuth heatmap, "3D People Tracking Detection Layer Tuning Guide"; vital signs; gestures) have a substitute.
+Capon range-azimuth heatmap, "3D People Tracking Detection Layer Tuning Guide"; vital signs; gestures) have a
+substitute.
 """
 
 import math
@@ -109,7 +110,7 @@ def _substitute(lines: Lines, config: RadarConfig, device: str) -> FirmwareSetti
         static_removal=removes,
         second_peak=None,
         most_objects=SDK3_MAX_OBJECTS,
-        substitute=f"{what} is replaced by the out-of-box demo's with {words}, {clutter}: expect other points per frame",
+        substitute=f"{what} is replaced by the out-of-box demo's with {words}, {clutter}; its points per frame differ",
     )
 
 

@@ -4,9 +4,9 @@ Out-of-box demos: TLV 1 contains detected points, x, y, z in m and velocity in m
 integers with a Q format (SDK 1 and 2); TLV 7 SNR and noise in 0.1 dB; TLV 301 compressed points with their units
 (xWRL6432, xWRL1432). The header ends with a sub-frame number, except on the xWR1443. 3D People Tracking: TLV 1020
 contains compressed spherical points with their units, TLV 1000 spherical points as float32, TLV 1010 (308 on xWRL) the
-list of tracked targets. Its predecessor, 3D People Counting, has a different header and
-TLV lengths that include their own eight bytes; its TLV 6 equals TLV 1020, its TLV 7 TLV 1010. Truncated packets and packets with
-inconsistent lengths are skipped and counted.
+list of tracked targets. Its predecessor, 3D People Counting, has a different header and TLV lengths that include their
+own eight bytes; its TLV 6 equals TLV 1020, its TLV 7 TLV 1010. Truncated packets and packets with inconsistent lengths
+are skipped and counted.
 
 Frames are those that the board counted: packets that are missing are frames without points.
 
@@ -56,7 +56,7 @@ class ByteSource(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class Tracks:
-    """Targets that the board's tracker reports, (target,): frame, number, place in m and velocity in m/s (target, 3)."""
+    """Targets of the board's tracker, (target,): frame, number, place in m and velocity in m/s (target, 3)."""
 
     frame: np.ndarray
     number: np.ndarray
@@ -225,10 +225,10 @@ def _packet(data: bytes, at: int) -> Packet | None:
     return None
 
 
-def _targets(found: dict[int, bytes], *kinds: int) -> np.ndarray:
+def _targets(found: dict[int, bytes], *kinds: int) -> Any:
     """Targets of the first of these TLVs; none if there is none or its length is another."""
     raw = next((found[kind] for kind in kinds if kind in found), b"")
-    targets = np.frombuffer(raw, TARGET) if len(raw) % TARGET.itemsize == 0 else np.zeros(0, TARGET)
+    targets: Any = np.frombuffer(raw, TARGET) if len(raw) % TARGET.itemsize == 0 else np.zeros(0, TARGET)
     return targets[np.isfinite(targets["motion"]).all(axis=1)]
 
 
