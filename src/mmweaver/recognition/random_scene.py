@@ -13,7 +13,7 @@ CHEST_M, TOWARDS = 1.1, (0.2, 1.1)  # height of a chest; tilt of a high radar re
 HALF_M, TALL_M, CELL_M = 5.0, 2.4, 0.1  # half width and height of the room; cell size of its free floor
 # of a closed room: distance of a wall from people, and of walls from the radar to either side, ahead and behind it
 FROM_WALL_M, ASIDE_M, BACK_M, BEHIND_RADAR_M, CEILING_M = 0.4, (1.8, 4.0), (4.0, 7.5), (0.3, 1.5), (2.4, 3.0)
-WALLS = ("plasterboard", "concrete", "brick", "wood")
+WALLS = ("metal", "concrete", "concrete", "brick")  # cupboards and boards return what a metal wall does
 CORNERS = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])[:, :, None]
 
 
@@ -200,7 +200,7 @@ def closed_room(
     planes = [_floor(floor_z_m)]
     planes += [_plane("wall", *wall, str(rng.choice(WALLS)), (half, up)) for *wall, half in walls]
     ceiling = (x, y, floor_z_m + tall)
-    planes.append(_plane("ceiling", ceiling, (0, 0, -1), (1, 0, 0), "plasterboard", (across, along)))
+    planes.append(_plane("ceiling", ceiling, (0, 0, -1), (1, 0, 0), "concrete", (across, along)))
     return _scene(planes, panels, far)
 
 
