@@ -51,6 +51,9 @@ class LabelledSet:
     split: Literal["subject", "place", "room", "sentence"] | None = option(
         "what is held out for tests (default subject)"
     )
+    strict: bool = option(
+        "take no place where something is not done as the sentence says, measured on the joints", default=False
+    )
     method: str | None = option("weaver, the network (default), or physics", "NAME")
     iq: Iq | None = option(
         "how signals are stored (default float16, an error below 0.05 %); none: joints, points and what signals are"
@@ -157,10 +160,10 @@ def _run_rooms(asked: Options) -> int:
     if asked.dry_run:
         return asked.report(asdict(cost), cost.summary(workers))
     check_packages(asked.ray_address)
-    if not (asked.quiet or asked.json):
-        print(cost.summary(workers), file=sys.stderr)
     check_output_folder(out, overwrite=True, files=[PLAN_FILE])
     check_for_space(cost, out)
+    if not (asked.quiet or asked.json):
+        print(cost.summary(workers), file=sys.stderr)
     total = len(plan.kinds) * plan.num_layouts
     try:
         with tqdm(total=total, unit="room", disable=asked.quiet or None) as bar:

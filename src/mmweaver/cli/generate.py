@@ -2,13 +2,14 @@
 
 from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from mmweaver.cli.arguments import REQUEST_FILE, request_toml
 from mmweaver.cli.generate_inputs import DEFAULT_RADAR, radar_of, read_background, room_of, weaver_of
 from mmweaver.cli.option_groups import Layout, PointChoice, RadarChoice, Ranges, Written
 from mmweaver.core.errors import InputError
-from mmweaver.core.options import Place, Setting, Source, option, options, read_settings
+from mmweaver.core.options import Setting, Source, option, options, read_settings
+from mmweaver.core.placed_thing import PlacedThing
 from mmweaver.weaver.request import Request
 
 if TYPE_CHECKING:
@@ -61,9 +62,21 @@ class RoomInput:
     demo: bool = option(f"the bundled sample room (and --out {DEMO_OUT})", default=False, group="input")
     rgb: Path | None = option("colour picture of the room", "PNG")
     depth: Source | None = option(
-        "its depth: 16-bit PNG (mm, or camera.json's unit), .npy or float TIFF in metres; or a metric depth model that"
+        "its depth: 16-bit PNG, .npy or float TIFF in metres; or a metric depth model that"
         " estimates it: auto (downloaded once), a folder or a Hub name",
         "FILE|auto|MODEL",
+    )
+    depth_unit: str | None = option(
+        "unit of a depth picture of integers: mm, cm, tum (5000 a metre, also ICL-NUIM), replica (6553.5), kitti (256,"
+        " also VOID), 4000, 10000, sunrgbd, or the metres in one count (default: camera.json's depth_unit_m, else"
+        " estimated from the room)",
+        "NAME|METRES",
+        rare=True,
+    )
+    depth_kind: Literal["z", "ray", "disparity"] | None = option(
+        "what the depth picture holds: depth along the optical axis, distance along the ray, or a Kinect's disparities"
+        " (default: z, or ray where only then surfaces are flat)",
+        rare=True,
     )
     camera: Path | None = option("fx, fy, cx, cy in pixels (default: a RealSense D455's)", "JSON")
     room: Path | None = option(
@@ -84,10 +97,17 @@ class RoomInput:
         "PNG|builtin|MODEL",
         rare=True,
     )
-    landmark: list[tuple[str, Place]] | None = option(
-        "where a door, window, table, counter or bed is, if the photo does not show it well: metres right of and ahead"
-        " of the radar, for example door=0.9,2.8",
-        "KIND=X,Y",
+    landmark: list[PlacedThing] | None = option(
+        "where a thing that the text names is, if the photo does not show it well (door, table, sink, bin ...): metres"
+        " right of and ahead of the radar, for example door=0.9,2.8, and perhaps the direction that its front faces, in"
+        " degrees as for --heading",
+        "KIND=X,Y[,FACING]",
+        rare=True,
+    )
+    furnish: list[PlacedThing] | None = option(
+        "put furniture that the photo does not show into the room (bed, desk, table, chair, couch, wardrobe, sink, door"
+        " ...), as for --landmark; it echoes and occludes, and people use it",
+        "KIND=X,Y[,FACING]",
         rare=True,
     )
     photo: int | None = option("which photo of a scan or capture (default 0)", "N", rare=True)
@@ -124,10 +144,12 @@ class RoomInput:
             assert self.rgb is not None
             if self.depth is not None:
                 how[_picture_or("depth_model", "depth", self.depth)] = self.depth
+            how |= {"depth_unit": self.depth_unit, "depth_kind": self.depth_kind}
             return weaver.read_room(self.rgb, camera=self.camera, **how)
         mesh = read_settings(self.mesh_set, _MESH_SETTINGS, "mesh-set")
         how |= {"look_deg" if name == "look" else name: value for name, value in mesh.items()}
         how |= {"photo": self.photo, "rgb": self.rgb, "extra_views": _photos(self.extra_views)}
+        how |= {"depth_unit": self.depth_unit, "depth_kind": self.depth_kind}
         return weaver.open_room(self.room, **{name: value for name, value in how.items() if value is not None})
 
     def check_room(self) -> None:
@@ -279,6 +301,13 @@ class Options(RoomInput, Request, MotionInput, RadarChoice, Ranges, PointChoice,
         return {"adc_data_bin": self.keep_adc, "iq_order": self.iq_order, "pictures": not self.no_pictures}
 
     @property
+    def may_widen(self) -> bool:
+        """Whether the range window is a preset's, so that a sentence that lacks floor gets a wider one."""
+        from mmweaver.core.boards import PRESETS
+
+        return self.range_m is None and self.range_bins is None and self.radar_name(DEFAULT_RADAR) in PRESETS
+
+    @property
     def folder(self) -> Path:
         """The folder for results. Raises InputError where there is none."""
         if self.out is None and not self.demo:
@@ -330,6 +359,7 @@ def _run_one(asked: Options, out: Path) -> int:
         if asked.motion_file is None and asked.motion_model is None:  # before importing PyTorch, which takes 2 s
             parse(request, radar)
         weaver = weaver_of(asked, radar, bar)
+        weaver.widens = background is None and asked.may_widen
         parsed = weaver.parsed(_add_motion(asked, request, weaver))
         result = weaver.carry_out(parsed, room_of(asked, weaver, background))
         written = {REQUEST_FILE: asked.request_toml(text=texts, frames=parsed.frames, seconds=None)}

@@ -35,15 +35,15 @@ from mmweaver.motion.animation.root_path import resample
 from mmweaver.motion.compose import Motion
 from mmweaver.motion.continuous import ContinuousMotion
 from mmweaver.motion.mocap.clip import MotionClip
-from mmweaver.motion.mocap.clip_placement import place_clip
 from mmweaver.motion.mocap.read_motion import read_motion
-from mmweaver.motion.multi_person import compose_people
-from mmweaver.motion.people import subject_of
+from mmweaver.motion.physiology import living
 from mmweaver.motion.planning.placement import Conditions
 from mmweaver.propagation.rays import Rays
 from mmweaver.propagation.static_paths import ALL_PATHS
+from mmweaver.propagation.things import ThingPaths
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from, unseen_notes
 from mmweaver.signal.detection import check_points, detect, needs_adc, substitutes
+from mmweaver.weaver.composition import compose_request, furnished_room, widened, with_targets
 from mmweaver.weaver.generation import Generation, Room
 from mmweaver.weaver.parsed_request import ParsedRequest, parse
 from mmweaver.weaver.request import Request
@@ -104,6 +104,7 @@ class Weaver(RoomReader):
         is_named = not isinstance(radar, RadarConfig)
         self.calibration = read_ti_calibration(str(radar)) if calibration is None and is_named else calibration
         super().__init__(listener)
+        self.widens = False  # whether a sentence that lacks floor gets a wider range window
         self._background_board = BackgroundBoard()
         check_points(points, self.radar)
         self.points = points
@@ -217,6 +218,9 @@ class Weaver(RoomReader):
             keep_adc: Whether raw samples are returned, several times the cube's memory; the cube does not depend on it.
             board: Board whose errors the signal has: "typical" (sampled by the seed; the default, except with a
                 background, whose board is used), "typical:N", "ideal", a board.json or a `Board` (docs/board.md).
+            reflectors: Each a `Reflector` of known cross section (docs/things.md).
+            interferers: Each an `Interferer`, another radar.
+            things: Each a `Thing` that moves but is nobody: fan, curtain, door, cat ... (docs/things.md).
             radar_poses: One `RadarPose` per radar that records the scene (default: one at the camera).
 
         For several people `at`, `height_m` and `subject` are lists.
@@ -254,7 +258,8 @@ class Weaver(RoomReader):
             InputError: For a request that cannot be met.
         """
         check_streams(self.method, self.method_name)
-        request = self.request("a person stands", frames=1, **asked)
+        parser = asked.pop("parser", None)  # of the sentences to come
+        request = replace(self.request("a person stands", frames=1, **asked), parser=parser)
         (person,) = request.people
         motion = ContinuousMotion(
             room.scene,
@@ -264,6 +269,8 @@ class Weaver(RoomReader):
             farthest_m=request.config.farthest_bin_m,
             height_m=person.height_m,
             subject=person.subject,
+            missing=request.missing,
+            strict=request.strict,
         )
         return Streamer(self, room, request, motion, chunk_frames).chunks(sentences)
 
@@ -282,11 +289,17 @@ class Weaver(RoomReader):
         poses = request.radar_poses or (AT_CAMERA,)
         if room.background is not None and len(poses) > 1:
             raise InputError("a background recording is of one radar; give one radar pose, that of the recording")
-        scenes = [scene_seen_from(room.scene, pose) for pose in poses]
         stages = Stages(self._listener)
         stages.seconds.update(room.seconds)
         with stages("compose the motion"):
-            people = compose_request(request, room.scene) if people is None else people
+            if people is None:
+                room = furnished_room(request, room)
+                may_widen = self.widens and room.background is None and request.motion is None
+                request, people = (
+                    widened(request, room.scene) if may_widen else (request, compose_request(request, room.scene))
+                )
+        room = with_targets(room, request)
+        scenes = [scene_seen_from(room.scene, pose) for pose in poses]
         results = [self._recorded(request, replace(room, scene=scene), people, stages) for scene in scenes]
         return replace(results[0], further=tuple(results[1:]))
 
@@ -338,7 +351,11 @@ class Weaver(RoomReader):
         )
         with stages("point cloud"):
             points = detect(signal.cube, signal.adc, self.points, self.firmware_of(board))
-        poses = tuple(resample(one, signal.cube.grid.frame_time_s) for one in motions)
+        time_s = signal.cube.grid.frame_time_s
+        poses = tuple(
+            living(resample(one, time_s), request.seed, pose, time_s[-1] + request.config.frame_period_s)
+            for one in motions
+        )
         adc = signal.adc if request.keep_adc else None
         if adc is not None and self.calibration is not None and not request.config.is_coded:
             adc = self.calibration.recorded(adc)
@@ -347,7 +364,12 @@ class Weaver(RoomReader):
         meta = self._meta(request, room, people, poses, signal, board)
         if request.radar_poses:
             meta["radar_pose"] = pose
+        things = ThingPaths(room.scene, request.config).truth(time_s)
+        if things:
+            meta["things"] = [{"kind": one.kind, "starts_at_m": one.place_m[0], **one.facts} for one in things]
+        meta |= {name: one for name in ("reflectors", "interferers") if (one := getattr(room.scene, name))}
         return Generation(
+            things=things,
             cube=signal.cube,
             points=points,
             adc=adc,
@@ -423,51 +445,6 @@ class Weaver(RoomReader):
         }
 
 
-def compose_request(request: ParsedRequest, scene: Scene) -> tuple[Motion, ...]:
-    """Composes the motion of each person; a recorded motion replaces that of the first.
-
-    Args:
-        request: The parsed request.
-        scene: The room in the camera's coordinates.
-
-    Returns:
-        One motion per person, without collisions with the room and each other.
-
-    Raises:
-        InputError: If the room has no space for the motion.
-    """
-    recorded = None
-    if not request.people:
-        return ()
-    first = request.people[0]
-    if request.motion is not None:
-        clip = request.motion if first.height_m is None else request.motion.scaled_to(first.height_m)
-        recorded = place_clip(
-            clip,
-            scene,
-            duration_s=request.duration_s,
-            seed=request.seed,
-            range_window_m=request.range_window_m,
-            start_m=first.start_m,
-            heading_rad=request.heading_rad,
-            as_recorded=request.as_recorded,
-        )
-        who = subject_of(request.seed) if first.subject is None else first.subject
-        recorded = replace(recorded, pose=replace(recorded.pose, subject=who))
-    return compose_people(
-        [person.plan for person in request.people],
-        scene,
-        seed=request.seed,
-        range_window_m=request.range_window_m,
-        starts_m=[person.start_m for person in request.people],
-        heights_m=[person.height_m for person in request.people],
-        subjects=[person.subject for person in request.people],
-        first=recorded,
-        heading_rad=request.heading_rad,
-        farthest_m=request.config.farthest_bin_m,
-    )
-
-
 def _found(weights: str | Path, revision: str | None = None) -> Path:
     from mmweaver.models.hub import find_weights
 
@@ -512,6 +489,7 @@ def _person(pose: PoseSequence, motion: Motion) -> dict[str, Any]:
         "subject": pose.subject,
         "girth": pose.girth,
         **drawn,
+        **({} if pose.vitals is None else {name: getattr(pose.vitals, name) for name in ("breathing_hz", "heart_hz")}),
         "starts_at_m": path_m[0],
         "ends_at_m": path_m[-1],
         "path_length_m": round(float(np.linalg.norm(np.diff(path_m, axis=0), axis=1).sum()), 3),
