@@ -26,7 +26,7 @@ from mmweaver.recordings.read_recording import Recording, as_config, read_record
 from mmweaver.recordings.recording_pieces import RecordingPieces
 from mmweaver.scene.photo.capture_photo import photo_folder, photo_times_s
 from mmweaver.signal.cube import remove_static
-from mmweaver.signal.detection import check_points, detect, needs_adc
+from mmweaver.signal.detection import check_points, detect, needs_adc, substitutes
 from mmweaver.signal.windows import MIN_HANN_LOOPS
 from mmweaver.viz.feature_page import draw_micro_doppler, draw_people, draw_slow_time
 from mmweaver.viz.figure_data import FigureData
@@ -259,7 +259,7 @@ def _meta(
         **radar_meta(cube.config),
         "inputs": {name: _digest(file) for name, file in recording.files.items()},
         **({} if recording.packets is None else _packets_meta(recording.path, recording.packets)),
-        "assumed": [*_assumptions(recording), *recording.config.notes],
+        "assumed": [*_assumptions(recording), *recording.config.notes, *substitutes(points, firmware)],
     }
 
 
