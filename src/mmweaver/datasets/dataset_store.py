@@ -10,6 +10,7 @@
         empty_iq    (range, antenna, part)  static clutter of the room
         SHA256SUMS  of all files of the room; the root has one of its own files
         geometry/   instead of iq: stored geometry from which signals are synthesised (`geometry_store`)
+    OUT/office_003.zip         instead of the folder, if the set is packed: the same files, uncompressed
 
 Every chunk ends in its CRC-32C, and every file is checked before use: signals and geometry when they are first read,
 all other files of a room when it is opened. Written by `dataset_writer`. Reference: Zarr v3, xarray's
@@ -28,21 +29,16 @@ from mmweaver.core.checksums import check_file
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, RadarCube, RgbdPhoto
+from mmweaver.core.safe_files.regular_files import Place
 from mmweaver.core.safe_files.safe_text import parse_json, read_text
 from mmweaver.core.safe_files.safe_zarr import ZarrFolder, open_zarr
 from mmweaver.datasets.checked_folder import CheckedFolder, stored_iq
+from mmweaver.datasets.dataset_folder import PLAN_FILE, finished, room_place
 from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M, check_plan, command_of, room_name
 from mmweaver.datasets.geometry_store import GEOMETRY, StoredGeometry
 from mmweaver.datasets.zarr_arrays import stored_photo
 
-PLAN_FILE = "plan.json"
 FARTHEST_M, FASTEST_MPS = 1000.0, 1000.0  # limits of joints and depths; anything beyond indicates damage
-
-
-def is_done(folder: Path, name: str) -> bool:
-    """Whether a room is complete; it is renamed into place only then."""
-    room = folder / name
-    return room.is_dir() and any(room.iterdir())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,8 +63,8 @@ class StoredRoom:
     device: str = "cpu"  # device on which signals are synthesised from geometry
 
     @property
-    def folder(self) -> Path:
-        """Folder of the room."""
+    def folder(self) -> Place:
+        """Folder of the room, or its root in a zip."""
         return self.files.folder
 
     def cube(self, index: int, frames: np.ndarray | None = None, *, realization: int = 0) -> RadarCube:
@@ -141,13 +137,13 @@ def read_rooms(folder: Path, *, device: str = "cpu") -> list[StoredRoom]:
     """
     plan = read_plan(folder)
     names = sorted(room_name(kind, layout) for kind in plan["kinds"] for layout in range(plan["num_layouts"]))
-    missing = [name for name in names if not is_done(folder, name)]
+    missing = sorted(set(names) - finished(folder, names))
     made_by = command_of(plan, folder)
     if missing:
         others = f" and {len(missing) - 1} more of its {len(names)} rooms are" if len(missing) > 1 else " is"
         raise InputError(f"{folder} is not complete: {missing[0]}{others} missing; make the rest with: {made_by}")
     config = read_radar(folder)
-    rooms = (_room(CheckedFolder.of(folder / name, made_by), config, device) for name in names)
+    rooms = (_room(CheckedFolder.of(room_place(folder, name), made_by), config, device) for name in names)
     return [room for room in rooms if room is not None]
 
 

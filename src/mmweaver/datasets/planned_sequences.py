@@ -131,7 +131,9 @@ def held_out_leaks(
         counts += np.bincount(block.split.ravel(), minlength=len(splits))
         ordered = np.sort(block.seed, axis=1)
         if (ordered[:, 1:] == ordered[:, :-1]).any():
-            leaks.append(f"a seed occurs twice in one of the rooms {block.first} to {block.first + len(block.seed) - 1}")
+            leaks.append(
+                f"a seed occurs twice in one of the rooms {block.first} to {block.first + len(block.seed) - 1}"
+            )
         for number, name in enumerate(splits):
             is_own = block.split == number
             places = [place_of(block.first + int(room)) for room in np.flatnonzero(is_own.any(axis=1))]
