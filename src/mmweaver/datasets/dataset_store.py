@@ -43,13 +43,12 @@ FARTHEST_M, FASTEST_MPS = 1000.0, 1000.0  # limits of joints and depths; anythin
 
 @dataclass(frozen=True, kw_only=True)
 class StoredRoom:
-    """A room of a data set: photo and joints in memory, cubes read or synthesised on demand."""
+    """A room of a data set: joints in memory; photo and cubes are read, or cubes synthesised, on demand."""
 
     files: CheckedFolder
     kind: str
     layout: int
     lighting: str
-    photo: RgbdPhoto
     static: np.ndarray  # (range, antenna) complex64, static clutter at the peak of zero Doppler, sqrt(mW)
     joints_m: np.ndarray  # (sequence, frame, 22, 3)
     joint_velocity_mps: np.ndarray  # (sequence, frame, 22, 3)
@@ -61,11 +60,20 @@ class StoredRoom:
     config: RadarConfig
     geometry: StoredGeometry | None = None  # for data sets without signals
     device: str = "cpu"  # device on which signals are synthesised from geometry
+    given_photo: RgbdPhoto | None = None  # instead of the stored one
 
     @property
     def folder(self) -> Place:
         """Folder of the room, or its root in a zip."""
         return self.files.folder
+
+    @cached_property
+    def photo(self) -> RgbdPhoto:
+        """Photo of the room. Raises InputError if it is damaged."""
+        if self.given_photo is not None:
+            return self.given_photo
+        with self.files.reading():
+            return stored_photo(self._arrays)
 
     def cube(self, index: int, frames: np.ndarray | None = None, *, realization: int = 0) -> RadarCube:
         """Reads or synthesises the cube of one sequence.
@@ -217,12 +225,13 @@ def _stored_room(files: CheckedFolder, group: ZarrFolder, config: RadarConfig, d
         kind=group.attr("kind", str),
         layout=group.attr("layout", int),
         lighting=group.attr("lighting", str),
-        photo=stored_photo(group),
         static=(static[..., 0] + 1j * static[..., 1]).astype(np.complex64),
         joints_m=joints_m,
         joint_velocity_mps=group.numbers("joint_velocity_mps", pose, kinds="f", low=-FASTEST_MPS, high=FASTEST_MPS),
         person=group.numbers(people, one_each, kinds="iu", low=0, high=len(PEOPLE_HEIGHT_M) - 1),
-        **words,
+        activity=words["activity"],
+        text=words["text"],
+        split=words["split"],
         seed=group.numbers("seed", one_each, kinds="iu", low=0),
         config=config,
         geometry=StoredGeometry(files=files, config=config) if group.has_group(GEOMETRY) else None,
