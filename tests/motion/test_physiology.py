@@ -61,7 +61,7 @@ def test_the_trunk_accelerates_over_the_hips_as_published():
     """Angular acceleration over the hips is 3.15 (deviation 1.24) times that over the ankles (Aramaki et al. 2001)."""
     hips, ankles = [], []
     for subject in range(8):
-        place = moved(subject, 0, PhysiologySettings(tremor_m=0.0))[..., 1] + JOINTS[..., 1]
+        place = moved(subject, 0, PhysiologySettings(tremor_m=0.0, breath_m=0.0, heart_m=0.0))[..., 1] + JOINTS[..., 1]
         pelvis, chest, foot = (place[:, joint(name)] for name in ("pelvis", "spine3", "left_foot"))
         height = {name: JOINTS[0, joint(name), 2] for name in ("pelvis", "spine3", "left_ankle")}
         leg_rad = (pelvis - foot) / (height["pelvis"] - height["left_ankle"])
@@ -74,9 +74,11 @@ def test_the_trunk_accelerates_over_the_hips_as_published():
 def test_feet_stay_and_hands_tremble():
     wander = moved(0, 0)
     assert rms(wander[:, joint("left_foot")]) < 0.2e-3  # it lies a little over the lower one
-    alone = moved(0, 0, PhysiologySettings(sway_m=0.0))
+    alone = moved(0, 0, PhysiologySettings(sway_m=0.0, breath_m=0.0))
     assert rms(alone[:, joint("left_wrist")]) > rms(alone[:, joint("left_shoulder")])
-    trembling = moved(0, 0, PhysiologySettings(sway_m=0.0, waver_m=0.0))[:, joint("left_wrist"), 0]
+    trembling = moved(0, 0, PhysiologySettings(sway_m=0.0, waver_m=0.0, breath_m=0.0, heart_m=0.0))[
+        :, joint("left_wrist"), 0
+    ]
     power = np.abs(np.fft.rfft(trembling)) ** 2
     frequency_hz = np.fft.rfftfreq(len(trembling), STEP_S)
     assert power[(frequency_hz > 7.9) & (frequency_hz < 12.1)].sum() > 0.95 * power.sum()

@@ -417,7 +417,7 @@ def with_targets(room: Room, request: ParsedRequest) -> Room:
     if not request.things and not request.reflectors and not request.interferers:
         return room
     if request.reflectors and room.background is not None:
-        raise InputError("a background recording has its own echoes; leave out --reflector or --background")
+        raise InputError("a background recording has its own echoes; leave out the reflector or the background")
     things: list[Thing] = []
     for number, thing in enumerate(request.things):
         seed = int(stream(request.seed, "thing", number).integers(2**31))
