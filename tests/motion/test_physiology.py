@@ -8,8 +8,8 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import Breathing
 from mmweaver.core.skeleton import joint
-from mmweaver.motion.physiology import STILL, Physiology, PhysiologySettings, Waves, breathing_rate_of
-from mmweaver.propagation.body_model import ScatteringBody
+from mmweaver.motion.physiology import STILL, Physiology, PhysiologySettings, Waves, breathing_rate_of, cover_of
+from mmweaver.propagation.body_model import ScatteringBody, body_of
 from tests.rooms import standing_person
 
 STEP_S = 0.04
@@ -175,3 +175,11 @@ def test_waves_have_the_rms_asked_for():
     rng = np.random.Generator(np.random.SFC64(0))
     waves = Waves(rng, (40,), 0.2, 2.0, 1.0).at(np.arange(0, 600, 0.05))
     assert np.sqrt((waves**2).mean()) == pytest.approx(1.0, rel=0.05)
+
+
+def test_a_blanket_is_taken_out_of_the_sentence_and_weakens_the_body():
+    assert cover_of("a person lies on the floor under a thick duvet") == ("a person lies on the floor", 5.0)
+    assert cover_of("a person crawls under a table") == ("a person crawls under a table", 0.0)
+    pose = replace(standing_person((0.0, 2.0, -1.2)), cover_db=3.0)
+    bare, covered = (body_of(one).brightness for one in (replace(pose, cover_db=0.0), pose))
+    assert covered == pytest.approx(bare / 10**0.3)

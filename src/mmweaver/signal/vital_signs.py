@@ -19,6 +19,7 @@ CLEAR = 0.9  # least confidence of a clear breathing rate
 CONFIDENCE, MAX_CONTRAST_DB, MAX_DURATION_S = (-9.9, 0.85, 1.5), 20.0, 60.0
 CLEAR_HEART_DB, CLEAR_HEART_CONTRAST_DB = 12.0, 8.0  # peak over the band's median, and over what competes with it
 MIN_PERIODS = 2.0
+LOBE_HZ = 0.08  # on either side of the breathing's peak
 PAD = 8  # zero-padding factor of the spectra
 HARMONICS = 12
 MAX_BREATHING_M, MIN_BREATHING_M = 40e-3, 0.1e-3  # peak to peak: more is walking, anything below is noise
@@ -57,9 +58,12 @@ def breathing_rate(displacement_m: Float[np.ndarray, " frame"], period_s: float)
     """
     detrended = scipy_signal.detrend(displacement_m)
     # of the velocity, in which sway, whose amplitude falls with the frequency, has no peak
-    found = _rate(np.gradient(detrended, period_s), period_s, BREATHING_HZ)
+    velocity = np.gradient(detrended, period_s)
+    found = _rate(velocity, period_s, BREATHING_HZ)
     if found is None:
         return None
+    mean_hz = _mean_frequency(velocity, period_s, found.frequency_hz)
+    found = replace(found, frequency_hz=mean_hz, per_minute=60 * mean_hz)
     extent_m = float(np.ptp(_band(detrended, period_s, BREATHING_HZ)))
     is_breath = MIN_BREATHING_M <= extent_m <= MAX_BREATHING_M
     return found if is_breath else replace(found, is_clear=False, confidence=0.0)
@@ -130,6 +134,17 @@ def _confidence(contrast_db: float, duration_s: float) -> float:
     """Probability that a rate is right within 0.5 per minute."""
     values = 1.0, min(contrast_db, MAX_CONTRAST_DB), min(duration_s, MAX_DURATION_S) / 10
     return float(1 / (1 + np.exp(-np.dot(CONFIDENCE, values))))
+
+
+def _mean_frequency(values: np.ndarray, period_s: float, near_hz: float) -> float:
+    """Mean frequency of the component near a peak, from the slope of its phase; a windowed peak is that of the middle."""
+    half_hz = min(LOBE_HZ, near_hz / 2)
+    spectrum, frequency_hz = np.fft.fft(values), np.fft.fftfreq(len(values), period_s)
+    spectrum[np.abs(frequency_hz - near_hz) > half_hz] = 0
+    inner = slice(len(values) // 20, len(values) - len(values) // 20)
+    phase = np.unwrap(np.angle(np.fft.ifft(spectrum)))[inner]
+    slope = np.polyfit(np.arange(len(values))[inner] * period_s, phase, 1)[0]
+    return float(np.clip(slope / (2 * np.pi), near_hz - half_hz, near_hz + half_hz))
 
 
 def _band(values: np.ndarray, period_s: float, band_hz: tuple[float, float]) -> np.ndarray:

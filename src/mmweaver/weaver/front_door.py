@@ -499,9 +499,11 @@ def compose_request(request: ParsedRequest, scene: Scene) -> tuple[Motion, ...]:
 
 
 def _breathing(motion: Motion, person: PersonRequest) -> Motion:
-    """The motion with the breathing that the text asks for."""
+    """The motion with the breathing that the text asks for, and under the blanket that it names."""
     asked = Breathing(per_minute=person.breaths_per_minute, held_s=held_breaths(motion.plan.steps))
-    return motion if asked == Breathing() else replace(motion, pose=replace(motion.pose, breathing=asked))
+    if asked == Breathing() and not person.cover_db:
+        return motion
+    return replace(motion, pose=replace(motion.pose, breathing=asked, cover_db=person.cover_db))
 
 
 def _found(weights: str | Path, revision: str | None = None) -> Path:
