@@ -137,7 +137,7 @@ def _confidence(contrast_db: float, duration_s: float) -> float:
 
 
 def _mean_frequency(values: np.ndarray, period_s: float, near_hz: float) -> float:
-    """Mean frequency of the component near a peak, from the slope of its phase; a windowed peak is that of the middle."""
+    """Mean frequency of the component near a peak, from the slope of its phase: a peak is that of the middle."""
     half_hz = min(LOBE_HZ, near_hz / 2)
     spectrum, frequency_hz = np.fft.fft(values), np.fft.fftfreq(len(values), period_s)
     spectrum[np.abs(frequency_hz - near_hz) > half_hz] = 0
