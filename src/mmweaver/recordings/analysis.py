@@ -144,7 +144,7 @@ def _vital_signs(cells: tuple[SlowTimeCell, ...], period_s: float) -> VitalSigns
         if breathing is not None and breathing.is_clear:
             heart = heart_rate(cell.displacement_m, period_s, breathing)
             found.append(VitalSigns(range_m=cell.range_m, breathing=breathing, heart=heart))
-    return max(found, key=lambda one: one.breathing.peak_over_median_db if one.breathing else 0.0, default=None)
+    return max(found, key=lambda one: one.breathing.confidence if one.breathing else 0.0, default=None)
 
 
 def _micro_doppler(adc: AdcCube | None) -> MicroDoppler | None:

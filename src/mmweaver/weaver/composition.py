@@ -187,7 +187,7 @@ def with_targets(room: Room, request: ParsedRequest) -> Room:
     if not request.things and not request.reflectors and not request.interferers:
         return room
     if request.reflectors and room.background is not None:
-        raise InputError("a background recording has its own echoes; leave out --reflector or --background")
+        raise InputError("a background recording has its own echoes; leave out the reflector or the background")
     things: list[Thing] = []
     for number, thing in enumerate(request.things):
         seed = int(stream(request.seed, "thing", number).integers(2**31))
@@ -223,6 +223,8 @@ def free_place(
 
 
 def _breathing(motion: Motion, person: PersonRequest) -> Motion:
-    """The motion with the breathing that the text asks for."""
+    """The motion with the breathing that the text asks for, and under the blanket that it names."""
     asked = Breathing(per_minute=person.breaths_per_minute, held_s=held_breaths(motion.plan.steps))
-    return motion if asked == Breathing() else replace(motion, pose=replace(motion.pose, breathing=asked))
+    if asked == Breathing() and not person.cover_db:
+        return motion
+    return replace(motion, pose=replace(motion.pose, breathing=asked, cover_db=person.cover_db))
