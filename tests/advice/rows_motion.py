@@ -8,23 +8,29 @@ DEMO = f"generate --demo {SHORT}"
 ONE = f"{DEMO} --frames 1"
 
 ROWS = (
-    Row("class mask (--classes)", f"{ONE} --text 'a person walks to the sink'", (add("--landmark", "sink=0.3,2.3"),)),
     Row(
         "class mask (--classes)",
-        f"{ONE} --text 'a person walks to the wardrobe'",
+        f"{ONE} --missing refuse --text 'a person walks to the sink'",
+        (add("--landmark", "sink=0.3,2.3"),),
+    ),
+    Row(
+        "class mask (--classes)",
+        f"{ONE} --missing refuse --text 'a person walks to the wardrobe'",
         (add("--landmark", "wardrobe=0.3,2.3"),),
     ),
     Row(
-        "class mask (--classes)", f"{ONE} --text 'a person walks to the fridge'", (add("--landmark", "fridge=0.3,2.3"),)
+        "class mask (--classes)",
+        f"{ONE} --missing refuse --text 'a person walks to the fridge'",
+        (add("--landmark", "fridge=0.3,2.3"),),
     ),
     Row(
         "or say another side to face",
-        f"{ONE} --text 'a person points at the lamp'",
+        f"{ONE} --missing refuse --text 'a person points at the lamp'",
         (add("--landmark", "lamp=0.3,2.3"),),
     ),
     Row(
         " give its position with --landmark □=X,Y, or",
-        f"{ONE} --text 'a person stands near the plant'",
+        f"{ONE} --missing refuse --text 'a person stands near the plant'",
         (add("--landmark", "plant=0.3,2.3"),),
     ),
     Row(

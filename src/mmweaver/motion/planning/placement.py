@@ -29,7 +29,7 @@ Array = np.ndarray
 MAX_TRIES, TRIES, ENOUGH = 140, 28, 10  # maximum candidates until the first, for all, and found
 LEAVES_SEATS = 2  # the attempt that abandons the room's seats, also made if none of them works
 ENOUGH_SEATED = 14  # found, of more ways to sit, if the usual ones touch something
-MAX_TRIES_IF_LOST = 90  # candidates tried for one that loses nothing of the sentence
+MAX_TRIES_IF_LOST = 60  # candidates tried for one that loses nothing of the sentence
 _SMALL_M2, MAX_TRIES_IF_SMALL = 0.5, 40  # a small floor is searched quickly
 _OCCLUDED_COST, _OCCLUDED_SITTING_COST = 4.0, 1.5  # cost of a trajectory, or seat, occluded from the camera
 _NUM_OCCLUSION_TESTS = 12  # along a trajectory
@@ -47,6 +47,7 @@ class Placement:
         assumptions: Sentences on what was assumed.
         invents_seat: Whether a stool was assumed although the room has a reachable seat.
         chair: A chair assumed to be pulled out, if any.
+        lost: Share of what the sentence asks for that the path loses (`path_facts.lost_share`).
     """
 
     path: RootPath
@@ -55,6 +56,7 @@ class Placement:
     assumptions: tuple[str, ...]
     invents_seat: bool = False
     chair: PulledChair | None = None
+    lost: float = 0.0
 
     @property
     def is_still(self) -> bool:
@@ -214,6 +216,7 @@ def _placement(trajectory: Trajectory, plan: MotionPlan) -> Placement:
         assumptions=tuple(dict.fromkeys(trajectory.notes)),
         invents_seat=trajectory.invents_seat,
         chair=trajectory.chair,
+        lost=trajectory.lost,
     )
 
 
