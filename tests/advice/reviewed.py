@@ -143,4 +143,15 @@ REVIEWED: dict[str, str] = {
         ),
         PYTHON,
     ),
+    **dict.fromkeys(
+        (
+            "gave no usable answer to",
+            "is no http or https URL, nor module:attribute",
+            "--parser □ cannot be imported",
+            "--parser □ is no URL, no folder of a model",
+            "--parser with the folder of a model",
+        ),
+        "takes a language model; tests/motion/language/test_model_parser.py tries these",
+    ),
+    "which □ needs in this room; --range sets it": NOTE,
 }

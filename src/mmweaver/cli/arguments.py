@@ -81,7 +81,6 @@ RENAMED = {
     "--keep-noise": "keep noise in Python: compress_cube(..., keep_noise=True)",
     "--lighting": "choose the light in Python: make_room(...).photo(LIGHTINGS[NAME])",
     "--precision": "a CPU takes float32, a GPU bf16",
-    "--strict": "samples that do not fit the settings are a warning in meta.json",
     "--scatterers": "leave the residual out in Python: read_cube(..., with_residual=False)",
 }
 

@@ -21,7 +21,6 @@ from mmweaver.motion.planning.named_places import cells_of
 from mmweaver.motion.planning.occluded_geometry import occluded_along
 from mmweaver.motion.planning.seating import Sitting, usable_seats
 from mmweaver.motion.planning.separation import is_clear_of
-from mmweaver.motion.planning.targets import check_targets
 from mmweaver.motion.planning.trajectory import NoTrajectory, Trajectory
 from mmweaver.motion.planning.trajectory_sampler import CandidateSampler, starts_seated
 
@@ -135,7 +134,6 @@ def place(
             step.
     """
     start_m, after, others = conditions.start_m, conditions.after, conditions.others
-    check_targets(plan, floor.scene)
     for step in plan.steps:
         if step.place is not None:
             floor.place_cells[step.place] = cells_of(step.place, floor)
