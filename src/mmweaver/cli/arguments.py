@@ -29,7 +29,7 @@ REQUEST_FILE = "request.toml"
 HELP_ALL = "--help-all"
 # written into request.toml even where they are the default, which may change
 ALWAYS_WRITTEN = ("radar", "frames", "seed", "points", "method", "board")
-IGNORED_IN_FILES = ("draws", "html", "strict", "log-level")  # of 0.2, which do not affect the signal
+IGNORED_IN_FILES = ("draws", "html", "log-level")  # of 0.2, which do not affect the signal
 # defaults of 0.2 that a file may name; switches were off
 OLD_DEFAULTS = {"repeat": 1, "motion-model-for": "unknown", "precision": "auto", "lighting": "", "effort": "full"}
 # Options of 0.2: their present name, possibly with a key that precedes the value; or what to do instead.
