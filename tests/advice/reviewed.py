@@ -153,5 +153,5 @@ REVIEWED: dict[str, str] = {
         ),
         "takes a language model; tests/motion/language/test_model_parser.py tries these",
     ),
-    "which □ needs in this room; --range sets it": NOTE,
+    "sentence needs in this room; --range sets it": NOTE,
 }
