@@ -259,7 +259,11 @@ def _meta(
         **radar_meta(cube.config),
         "inputs": {name: _digest(file) for name, file in recording.files.items()},
         **({} if recording.packets is None else _packets_meta(recording.path, recording.packets)),
-        "assumed": [*_assumptions(recording), *recording.config.notes, *substitutes(steps.points, _firmware(steps.points, recording.radar_source))],
+        "assumed": [
+            *_assumptions(recording),
+            *recording.config.notes,
+            *substitutes(steps.points, _firmware(steps.points, recording.radar_source)),
+        ],
     }
 
 
