@@ -44,7 +44,7 @@ def load_hypernetwork(file: Path) -> tuple[HyperNetwork | PowerNetwork, WeightsC
 class FieldRoom(LearnedRoom):
     """A room whose echoes are the cells of a field, read at the radar's own resolution; first order alone."""
 
-    has_others = False
+    has_anchors = has_others = False
 
     def _encoded(self, view: SceneTensors) -> PowerEncoding:
         assert isinstance(self.network, PowerNetwork)
