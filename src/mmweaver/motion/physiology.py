@@ -37,6 +37,7 @@ LYING = 0.1  # of sway, wavering and tremor
 # Wavering of each joint relative to its parent, as a share of `waver_m`. Standing feet do not waver.
 WAVER = {"knee": 0.2, "spine1": 0.6, "spine3": 0.6, "head": 0.5, "shoulder": 0.3, "elbow": 0.3, "wrist": 0.4}
 WEIGHT = np.array([WAVER.get(name.split("_")[-1], 0.0) for name in JOINT_NAMES])
+WAVERING = np.flatnonzero(WEIGHT)
 # How far joints follow the front of the chest, forwards and half as much upwards: shoulders, neck and head ride on it.
 LIFT = {"spine3": 0.25, "neck": 0.25, "head": 0.25, "collar": 0.3, "shoulder": 0.3, "elbow": 0.2, "wrist": 0.1}
 LIFTED = np.array([LIFT.get(name.split("_")[-1], 0.0) for name in JOINT_NAMES])
@@ -97,10 +98,13 @@ class Waves:
         self.amplitude = amplitude * np.sqrt(2 / (amplitude**2).sum(axis=-1, keepdims=True))
         self.phase_cycles = rng.random((*shape, count))
 
-    def at(self, time_s: np.ndarray) -> np.ndarray:
-        """Values (time, *shape) at times (time,) in seconds."""
-        time = time_s.reshape(-1, *(1,) * self.phase_cycles.ndim)
-        return (self.amplitude * np.sin(2 * np.pi * (self.frequency_hz * time + self.phase_cycles))).sum(axis=-1)
+    def at(self, time_s: np.ndarray, rows: Any = ...) -> np.ndarray:
+        """Values (time, *shape) at times (time,) in seconds, or those of some rows of the shape."""
+        frequency_hz, amplitude, cycles = (
+            part[rows] for part in (self.frequency_hz, self.amplitude, self.phase_cycles)
+        )
+        time = time_s.reshape(-1, *(1,) * cycles.ndim)
+        return (amplitude * np.sin(2 * np.pi * (frequency_hz * time + cycles))).sum(axis=-1)
 
     def integral(self, time_s: np.ndarray) -> np.ndarray:
         """Integrals (time, *shape) from an arbitrary origin to times (time,), in seconds."""
@@ -179,7 +183,8 @@ class Physiology:
             (rests * amplitude * _share(seated, stands))[..., None]
             for amplitude, seated in ((settings.waver_m, SEATED_WAVER), (settings.tremor_m, SEATED_TREMOR))
         )
-        own = waver_m * self.waver.at(time_s) + tremor_m * self.tremor.at(time_s)
+        own = np.zeros(moved.shape)
+        own[:, WAVERING] = waver_m * self.waver.at(time_s, WAVERING) + tremor_m * self.tremor.at(time_s, WAVERING)
         return moved + self.size[1] * _along_limbs(own)
 
     def trunk_m(self, joints_m: np.ndarray, time_s: np.ndarray, height_m: float) -> np.ndarray:
