@@ -187,7 +187,7 @@ class MotionInput:
 
     motion_file: Path | None = option(
         "a recorded motion instead of the first --text, which then only names it: .bvh, .npz (AMASS, SMPL, CMU,"
-        " joints), .npy (22 joints, HumanML3D)",
+        " joints), .c3d, .npy (22 joints, HumanML3D, MDM, Motion-X)",
         "FILE",
         name="motion",
         group="motion",

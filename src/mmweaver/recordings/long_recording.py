@@ -20,6 +20,8 @@ import numpy as np
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.constants import __version__
 from mmweaver.core.records import CubeGrid, PointCloud, RadarCube
+from mmweaver.core.safe_files.safe_arrays import read_npz
+from mmweaver.core.safe_files.safe_text import read_text
 from mmweaver.io.npz_files import DiskCube, write_npz
 from mmweaver.recordings.analysis import RecordingAnalysis, recording_analysis
 from mmweaver.recordings.read_recording import Recording
@@ -86,7 +88,7 @@ class LongRecording:
         identity = {**identity, "version": __version__, "frames": blocks.num_frames}
         state = json.dumps(identity, sort_keys=True, default=str)
         file = work / STATE
-        if not file.is_file() or file.read_text(encoding="utf-8") != state:
+        if not file.is_file() or read_text(file) != state:
             work.mkdir(parents=True, exist_ok=True)
             for one in (*work.glob("*.npz"), work / CUBE):
                 one.unlink(missing_ok=True)
@@ -139,10 +141,10 @@ class LongRecording:
         """An array of all blocks; None if they do not have it."""
         found = []
         for file in sorted(self.work.glob("[0-9]*.npz")):
-            with np.load(file) as held:
-                if name not in held:
-                    return None
-                found.append(held[name])
+            held = read_npz(file, only=(name,))
+            if name not in held:
+                return None
+            found.append(held[name])
         return np.concatenate(found)
 
     def points(self, prefix: str = "") -> PointCloud | None:
