@@ -2,11 +2,12 @@
 
     python -m studies run cloud_quantiles examples/tasks/iwr6843.toml --people 8
 
-The task's CFAR thresholds become those of the recordings, 10 dB in both directions. RECORDED are medians of recordings of one such board in one room, one person at a time: figures alone, the recordings are not
-public.
+The task's CFAR thresholds become those of the recordings, 10 dB in both directions. RECORDED are medians of recordings
+of one such board in one room, one person at a time: figures alone, the recordings are not public.
 """
 
 import argparse
+import time
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_se
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.task_file import RecognitionTask, read_task
 from mmweaver.signal.firmware_cfar import counts_per_db
-from studies.manifest import StudyRun
+from studies.manifest import StudyRun, content_of
 from studies.schema import metric
 from studies.study import Reads
 
@@ -85,13 +86,15 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     recipe = SequenceRecipe.of(with_thresholds(read_task(options.task), THRESHOLD_DB))
     rows: list[dict[str, Any]] = []
+    data = {"sha256": content_of(options.task)["sha256"], "recordings": options.people}
     for label, recorded in RECORDED.items():
+        began = time.process_time()
         made = quantiles([generate_sequence(recipe, label, index) for index in range(options.people)])
         print(label, {name: (value, round(made[name], 2)) for name, value in recorded.items()}, flush=True)
         rows.append(
             {
-                "dataset": {"name": f"IWR6843, {label}", "recordings": options.people}, "n": options.people,
-                "seeds": [0],
+                "dataset": {"name": f"IWR6843, {label}", **data}, "n": options.people, "seeds": [0],
+                "seconds": {"generating": round(time.process_time() - began, 1)},
                 "metrics": {
                     name.replace(" ", "_"): metric(
                         made[name], "dB" if "SNR" in name else "as named", f"median {name} of generated clouds",
