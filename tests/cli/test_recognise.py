@@ -44,12 +44,20 @@ def test_train_score_and_run(model: Path, capsys: pytest.CaptureFixture[str], mo
     assert main(["recognise", "score", str(model), "--recordings", folder]) == 0
     assert "balanced accuracy" in capsys.readouterr().out
     one = next((model.parent / "people" / "rest").glob("*.npz"))
+    pictures = ["--pictures", str(model.parent / "pictures"), "--without", "all", "--json"]
+    assert main(["recognise", "score", str(model), "--recordings", folder, *pictures]) == 0
+    kept = json.loads(capsys.readouterr().out)
+    assert all(row["removed"] == {} for row in kept["removed"])
+    assert kept["pictures"] == []
+    assert kept["confidence"]["coverage"][0]["accuracy"] == pytest.approx(kept["confidence"]["accuracy"], abs=1e-3)
     assert main(["recognise", "run", str(model), "--points", str(one), "--json"]) == 0
     lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert [line["label"] for line in lines] == ["rest"] * 4
     monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b"Frame,X,Y,Z,Doppler\n0,0,2,0,0\n25,0,2,0,0\n")))
     assert main(["recognise", "run", str(model), "--points", "-"]) == 0
     assert "0.0 s" in capsys.readouterr().out
+    assert main(["recognise", "run", str(model), "--points", str(one), "--abstain", "1.0"]) == 0
+    assert "  ?  " in capsys.readouterr().out
 
 
 def test_the_largest_confusions_of_generated_people_are_named():
@@ -67,6 +75,7 @@ def test_the_largest_confusions_of_generated_people_are_named():
         (["run", "model", "--points", "a", "--out", "b"], "--out"),
         (["run", "nowhere", "--points", "a"], "nowhere does not exist; give a folder of mmweaver recognise train"),
         (["train", "nowhere.toml", "--out", "b"], "nowhere.toml"),
+        (["run", "model", "--points", "a", "--pictures", "b"], "--pictures"),
     ],
 )
 def test_mistakes_are_one_line(words: list[str], message: str, capsys: pytest.CaptureFixture[str]):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from mmweaver.core.seeding import stream
-from mmweaver.recognition.random_scene import CHEST_M, Variation, hung_high, sample_variation
+from mmweaver.recognition.random_scene import CHEST_M, Variation, closed_room, hung_high, sample_variation
 
 
 def test_samples_fill_their_ranges():
@@ -37,3 +37,17 @@ def test_a_share_of_the_radars_hangs_high_and_looks_down():
         assert 0.1 * below_deg < one.tilt_deg < 1.2 * below_deg
     assert all(one in before for one in after if one not in high)
     assert all(hung_high(one, Variation(), stream(0, "mount")) is one for one in before[:3])
+
+
+def test_a_closed_room_has_walls_all_round_radar_and_people():
+    people = np.array([[-3.0, 2.0], [2.5, 8.0], [0.0, 1.0]])
+    room = closed_room(floor_z_m=-1.2, people_m=people, panels=(), rng=stream(3, "room"))
+    walls = [plane for plane in room.planes if plane.kind == "wall"]
+    assert len(walls) == 4
+    for plane in walls:  # normals point inwards
+        away_m = (np.column_stack([people, np.zeros(3)]) - plane.centre_m) @ plane.normal
+        assert away_m.min() > 0.39
+        assert -plane.centre_m @ plane.normal > 0.29  # the radar is inside, too
+    (ceiling,) = [plane for plane in room.planes if plane.kind == "ceiling"]
+    assert 2.4 <= ceiling.centre_m[2] + 1.2 <= 3.0
+    assert room.floor_z_m == -1.2

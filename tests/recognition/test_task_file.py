@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.errors import InputError
+from mmweaver.recognition.generated_sequences import SequenceRecipe
 from mmweaver.recognition.task_file import read_task
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "tasks"
@@ -77,3 +78,20 @@ def test_what_cannot_be_is_one_line(text: str, message: str, tmp_path: Path):
 @pytest.mark.parametrize("name", sorted(path.name for path in EXAMPLES.glob("*.toml")))
 def test_the_examples_are_tasks(name: str):
     assert len(read_task(EXAMPLES / name).activities) >= 5
+
+
+def test_clouds_are_as_recorded_where_the_board_has_sdk_3_or_the_task_says_so(tmp_path: Path):
+    for radar, more, clouds in (
+        ("iwr6843isk", "", "recorded"),
+        ("iwr1443_mars", "", "varied"),
+        ("iwr1443_mars", 'clouds = "recorded"', "recorded"),
+        ("iwr6843isk", 'clouds = "varied"', "varied"),
+    ):
+        file = tmp_path / "task.toml"
+        file.write_text(f'radar = "{radar}"\n{more}\n[activities]\nwalk = ["a person walks"]\nempty = "nobody"\n')
+        task = read_task(file)
+        assert task.clouds == clouds
+        assert ('"clouds": "recorded"' in SequenceRecipe.of(task).as_json()) == (clouds == "recorded")
+    file.write_text(file.read_text().replace("varied", "clear"))
+    with pytest.raises(InputError, match="clear"):
+        read_task(file)

@@ -76,7 +76,7 @@ def run(asked: Options) -> int:
         InputError: For options of another action, and for files that cannot be used.
     """
     action = asked.action
-    needed = {"train": "out", "score": "recordings", "run": "points abstain"}[action]
+    needed = {"train": "out", "score": "recordings", "run": "points"}[action]
     if getattr(asked, needed) is None:
         raise InputError(f"recognise {action} needs --{needed}")
     check_mode(

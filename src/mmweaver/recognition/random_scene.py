@@ -13,6 +13,7 @@ CHEST_M, TOWARDS = 1.1, (0.2, 1.1)  # height of a chest; tilt of a high radar re
 HALF_M, TALL_M, CELL_M = 5.0, 2.4, 0.1  # half width and height of the room; cell size of its free floor
 # of a closed room: distance of a wall from people, and of walls from the radar to either side, ahead and behind it
 FROM_WALL_M, ASIDE_M, BACK_M, BEHIND_RADAR_M, CEILING_M = 0.4, (1.8, 4.0), (4.0, 7.5), (0.3, 1.5), (2.4, 3.0)
+FURNITURE = 2  # panels in addition to those of an open room, which give the static points of a recorded one
 WALLS = ("metal", "concrete", "concrete", "brick")  # cupboards and boards return what a metal wall does
 CORNERS = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])[:, :, None]
 
@@ -199,6 +200,7 @@ def closed_room(
     )
     planes = [_floor(floor_z_m)]
     planes += [_plane("wall", *wall, str(rng.choice(WALLS)), (half, up)) for *wall, half in walls]
+    panels = (*panels, *(_panel(rng) for _ in range(FURNITURE)))
     ceiling = (x, y, floor_z_m + tall)
     planes.append(_plane("ceiling", ceiling, (0, 0, -1), (1, 0, 0), "concrete", (across, along)))
     return _scene(planes, panels, far)
