@@ -21,10 +21,8 @@ if TYPE_CHECKING:
     from mmweaver.cli.arguments import Parser
 
 ROOT = Path(__file__).resolve().parents[1]
-PACKAGE = ROOT / "src" / "mmweaver"
 TOP = {"README.md": "index.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md"}
 FIRST = "first_signal"  # of the gallery
-WITHOUT_HEADING = "    options:\n      show_root_heading: false\n      show_root_toc_entry: false\n"
 # what a browser fetches by itself: of elements, and of style sheets
 REMOTE = re.compile(
     r"""(?:<(?:link|script|img|iframe)\b[^>]*?(?:href|src)=|@import\s*|url\()\s*["']?((?:https?:)?//[^"')>\s]+)"""
@@ -44,7 +42,7 @@ def main() -> int:
         text = with_local_links((ROOT / name).read_text(encoding="utf-8"))
         (source / page).write_text(text.replace("](docs/", "]("), encoding="utf-8")
     decisions = decision_navigation(source / "decisions")
-    packages = write_references(source / "reference")
+    write_references(source / "reference")
     write_gallery(source / "gallery")
     (source / "reference" / "studies.md").write_text(list_of_studies(), encoding="utf-8")
     for page in source.rglob("*.md"):
@@ -52,7 +50,6 @@ def main() -> int:
     settings = (ROOT / "zensical.toml").read_text(encoding="utf-8")
     for place in ("src", "tools/docstring_blocks.py"):
         settings = settings.replace(f'["{place}"]', f'["{(ROOT / place).as_posix()}"]')
-    settings = settings.replace('"reference/api.md" }] }, # packages', f'"reference/api.md" }}, {packages}] }},')
     settings = settings.replace('["decisions/index.md"] }, # decisions', f'["decisions/index.md", {decisions}] }},')
     (out / "zensical.toml").write_text(settings, encoding="utf-8")
     zensical = Path(sys.executable).with_name("zensical")
@@ -101,8 +98,8 @@ def decision_navigation(folder: Path) -> str:
     return ", ".join(entries)
 
 
-def write_references(folder: Path) -> str:
-    """Writes pages of the command line, the public names and each package; returns navigation entries of the last."""
+def write_references(folder: Path) -> None:
+    """Writes the pages of the command line and of the public names; modules behind them are not for users' searches."""
     from mmweaver import _HOME
     from mmweaver import __all__ as public
     from mmweaver.cli.main import build_parser
@@ -111,18 +108,8 @@ def write_references(folder: Path) -> str:
     folder.mkdir()
     (folder / "cli.md").write_text(command_line(build_parser()), encoding="utf-8")
     names = [f"::: mmweaver.{_HOME[name]}.{name}" for name in public if name in _HOME]
-    head = "# Python\n\nWhat `from mmweaver import ...` gives; the packages behind it are on the pages that follow.\n\n"
+    head = "# Python\n\nWhat `from mmweaver import ...` gives.\n\n"
     (folder / "api.md").write_text(head + "\n\n".join(names) + "\n", encoding="utf-8")
-    entries = []
-    for package in sorted(path.parent for path in PACKAGE.glob("*/__init__.py") if path.parent.name != "cli"):
-        modules = sorted(path for path in package.rglob("*.py") if path.name != "__init__.py")
-        text = f"# mmweaver.{package.name}\n"
-        for module in modules:
-            dotted = ".".join(module.relative_to(PACKAGE.parent).with_suffix("").parts)
-            text += f"\n## {dotted.removeprefix('mmweaver.')}\n\n::: {dotted}\n{WITHOUT_HEADING}"
-        (folder / f"{package.name}.md").write_text(text, encoding="utf-8")
-        entries.append(f'{{ "mmweaver.{package.name}" = "reference/{package.name}.md" }}')
-    return ", ".join(entries)
 
 
 def list_of_studies() -> str:

@@ -112,7 +112,8 @@ def cloud_of(rows: Float[np.ndarray, "point 8"]) -> FirmwareCloud:
     none = np.zeros(len(rows), int)
     return FirmwareCloud(
         frame=none, x_m=rows[:, 2], y_m=rows[:, 3], z_m=rows[:, 4], radial_velocity_mps=rows[:, 5],
-        snr_db=np.full(len(rows), np.nan), intensity=rows[:, 6], range_bin=none, doppler_bin=none,
+        snr_db=np.full(len(rows), np.nan), intensity=rows[:, 6], noise_db=np.full(len(rows), np.nan),
+        range_bin=none, doppler_bin=none,
     )  # fmt: skip
 
 

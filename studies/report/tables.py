@@ -21,7 +21,9 @@ from studies.report.table_layouts import MatrixTable, MetricTable, PivotTable, R
 
 FIDELITY_SCORES = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
 FIDELITY = RowTable(
-    sources=tuple(f"field_fidelity/{name}" for name in ("inr_paper", "inr_smooth_short", "scatterers")),
+    sources=tuple(
+        f"field_fidelity/{name}" for name in ("inr_paper", "inr_smooth_short", "inr_modulated", "scatterers")
+    ),
     before=(("*zeros*", "baseline.zeros"), ("*static_mean*", "baseline.static_mean"),
             ("*other realization*", "oracle.realization"), ("*noise_free*", "oracle.noise_free")),
     columns=(("signal", "{dataset.name}"), ("method", "{label}"), ("values", "{size.values:,}"),
@@ -138,53 +140,18 @@ KITML = MetricTable(
     lines=(
         ("understood", "understood, of all"),
         ("understood_checking_half", "understood, of the half not developed on"),
-        ("understood_draw", "understood, of 300 drawn uniformly from that half"),
-        ("understood_development_draw", "understood, of 1,100 of that half read to widen the grammar"),
-        ("understood_frozen", "understood, of 300 in no earlier sample (harder than the half; frozen grammar)"),
-        ("understood_fresh_draw", "the same, by today's grammar, which what was wrong there has changed"),
-        ("understood_new_sentences",
-         "understood, of those among them whose words occur in no sentence of the other half"),
-        ("wrong_first_sample", "wrong by hand, first sample (faults mended since)"),
-        ("wrong_second_sample", "wrong by hand, second sample (faults mended since)"),
-        ("wrong_third_sample", "wrong by hand, third sample (faults mended since)"),
-        ("wrong_fourth_sample", "wrong by hand, fourth sample (grammar before the freeze)"),
-        ("wrong_fifth_sample", "wrong by hand, fifth sample (grammar before the development draw)"),
-        ("wrong_sixth_sample", "wrong by hand, sixth sample (faults mended since)"),
-        ("wrong_seventh_sample", "wrong by hand, seventh sample (faults mended since)"),
-        ("wrong", "wrong by hand without a word, understood ones of the last 300 (frozen grammar; mended since)"),
-        ("said", "shown otherwise or in part, which is said, of the same"),
-        ("wrong_seen_since", "wrong by today's grammar, of the same 300, all read since (not blind)"),
+        ("understood_frozen", "understood, of 300 in no earlier sample (frozen grammar)"),
+        ("wrong", "wrong without a report, of the understood ones of these (frozen grammar)"),
+        ("said", "shown otherwise or in part, which is reported, of the same"),
     ),
 )  # fmt: skip
-UNDERSTOOD_SINCE = (("understood_today", "understood by the grammar that the faults found have changed"),)
-RECORDED_DONE = (("recorded_done", "recorded as done though shown otherwise, said or not, of the same"),)
 CAPTIONS = ("fifth", "sixth", "seventh", "eighth", "ninth")  # the newest draws of people's captions
-UNREAD = {
-    f"unread_{'captions' if 'captions' in name else 'prompts'}{name.removeprefix('_captions')}": MetricTable(
-        sources=(f"unread_prompts/reading{name}",),
-        columns=KITML.columns,
-        lines=(
-            ("understood", "understood, of all (frozen grammar)"),
-            ("wrong", f"wrong by hand without a word, of the understood{' (mended since)' if is_mended else ''}"),
-            ("said", "shown otherwise or in part, which is said, of the same"),
-            *(RECORDED_DONE if name == "_captions_ninth" else ()),
-            *(UNDERSTOOD_SINCE if is_mended else ()),
-            *((("in_part_today", "of these, a clause is not done, which is said"),) if in_part else ()),
-        ),
-    )
-    for name, in_part, is_mended in (
-        ("", False, True), ("_second", False, True), ("_captions", False, True), ("_third", True, True),
-        ("_captions_second", True, True), ("_captions_third", True, True), ("_captions_fourth", True, True),
-        ("_strangers", True, True), ("_strangers_second", True, True), ("_strangers_third", True, False),
-        ("_strangers_fourth", True, False), *((f"_captions_{draw}", True, False) for draw in CAPTIONS),
-    )
-}  # fmt: skip
 CAPTIONS_DRAWS = RowTable(
     sources=tuple(f"unread_prompts/reading_captions_{draw}" for draw in CAPTIONS),
     columns=(
         ("draw", "{label}"), ("captions", "{n}"), ("understood", "{metrics.understood:percent_interval.1}"),
-        ("of these wrong without a word", "{metrics.wrong:percent_interval.1}"),
-        ("of these shown otherwise, which is said", "{metrics.said:percent_interval.1}"),
+        ("of these wrong without a report", "{metrics.wrong:percent_interval.1}"),
+        ("of these shown otherwise, reported", "{metrics.said:percent_interval.1}"),
         ("of these recorded as done though shown otherwise", "{metrics.recorded_done:percent_interval.1}"),
     ),
     labels={f"prompts of other projects, captions_{draw} draw": draw for draw in CAPTIONS},
@@ -390,7 +357,7 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "signal_statistics": statistics_table, "mars": MARS.render,
     "mars_validate": MARS_VALIDATE.render,
     "kitml": KITML.render, "strangers": STRANGERS.render,
-    **{name: table.render for name, table in UNREAD.items()},
+
     "activities": activities_table, "captions_draws": CAPTIONS_DRAWS.render,
     "blind_recognition": BLIND.render,
     "zero_shot_pose": ZERO_SHOT_POSE.render,

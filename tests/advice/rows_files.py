@@ -247,11 +247,6 @@ ROWS = (
         (plus("--radar-set antennas=", "--radar-set", "antennas=ods"),),
     ),
     Row(
-        "has no cfarCfg",
-        "generate --demo --frames 1 --no-pictures --out out --radar {made} --points firmware",
-        (add("--points"),),
-    ),
-    Row(
         "firmware points are for TI radars",
         "generate --demo --frames 1 --no-pictures --out out --radar {two_loops} --points firmware",
         (add("--points"),),

@@ -1,12 +1,14 @@
-"""What the README tells a reader to type: commands and Python, in the order of the page."""
+"""What README and tutorials tell a reader to type: commands and Python, in the order of the page."""
 
 import re
 import shlex
 from dataclasses import dataclass
+from pathlib import Path
 
 from tests.artifact.artifact import ROOT
 
 PAGE = ROOT / "README.md"
+TUTORIALS = sorted((ROOT / "docs" / "start").glob("*.md"))
 INSTALLING = ("pip", "git", "make", "python", "cd")  # of the package itself: there is a test of its own for that
 SHELLS = ("", "bash", "sh", "shell", "console")
 _BLOCK = re.compile(r"^```(\w*)\n(.*?)^```|((?:^    [^\n]*\n)+)", re.MULTILINE | re.DOTALL)
@@ -35,10 +37,10 @@ class Recipe:
         return commands
 
 
-def recipes() -> list[Recipe]:
-    """All recipes of the page; lines that install the package itself are left out."""
+def recipes(page: Path = PAGE) -> list[Recipe]:
+    """All recipes of a page; lines that install the package itself are left out."""
     found = []
-    for language, fenced, indented in _BLOCK.findall(PAGE.read_text(encoding="utf-8")):
+    for language, fenced, indented in _BLOCK.findall(page.read_text(encoding="utf-8")):
         if language == "python":
             found.append(Recipe(fenced, is_python=True))
         elif indented or language in SHELLS:

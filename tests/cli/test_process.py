@@ -126,7 +126,6 @@ def bad(recording: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
         (["whole.bin", "--radar", "bgt60"], "no board for a DCA1000"),
         (["whole.bin", "--radar", "bgt60", "--points", "firmware"], "--points cfar"),
         (["whole.bin", "--radar", "awr1843", "--points", "lidar"], "firmware"),
-        (["whole.bin", "--radar", "bare.cfg", "--points", "firmware"], "cfarCfg"),
         (["whole.bin"], "--radar"),
         (["capture_00000", "--radar", "awr1843"], "leave out --radar"),
         (["capture_00000", "--iq-order", "iq"], "leave out --iq-order"),

@@ -113,7 +113,7 @@ def test_a_foreign_or_damaged_file_is_no_field(fields: dict[str, SignalField], t
     write_tensors(tmp_path / "other.safetensors", tensors, {"format": "mmweaver weights"})
     tensors.pop("direction")
     write_tensors(tmp_path / "cut.safetensors", tensors, header)
-    for name, reason in (("other", "holds no field"), ("cut", "does not fit"), ("none", "does not exist")):
+    for name, reason in (("other", "holds no field"), ("cut", "does not fit"), ("none", "none.safetensors")):
         with pytest.raises(InputError, match=reason):
             load(tmp_path / f"{name}.safetensors")
 

@@ -7,7 +7,7 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareCfar, FirmwareSettings
-from mmweaver.io.radar_file import load_firmware, load_radar
+from mmweaver.io.radar_file import load_firmware
 from mmweaver.io.ti_firmware import read_ti_firmware
 from mmweaver.signal.firmware_cfar import noise_level
 
@@ -110,11 +110,36 @@ def test_settings_by_radar(tmp_path: Path):
     assert load_firmware("awr1843") == FirmwareSettings()
 
 
-def test_a_cfg_without_cfar_has_no_firmware_settings(tmp_path: Path):
-    path = written(tmp_path, "\n".join(SDK1.splitlines()[:8]))
-    assert load_radar(str(path)).num_loops == 16
-    with pytest.raises(InputError, match=r"cfarCfg.*--points cfar"):
-        read_ti_firmware(path)
+PEOPLE_TRACKING = """dynamicRACfarCfg -1 4 4 2 2 8 12 4 8 5.00 8.00 0.40 1 1
+staticRACfarCfg -1 6 2 2 2 8 8 6 4 8.00 15.00 0.30 0 0
+dynamic2DAngleCfg -1 1.5 0.0300 1 0 1 0.30 0.85 8.00
+"""
+
+
+def test_a_cfg_without_cfar_has_a_stated_substitute(tmp_path: Path):
+    bare = "\n".join(SDK1.splitlines()[:8])
+    settings = read_ti_firmware(written(tmp_path, bare))
+    assert settings.range_cfar is not None
+    assert settings.range_cfar.threshold == round(15 / 6.0206 * 512 * 12 / 16)
+    assert "without cfarCfg" in settings.substitute
+    assert not read_ti_firmware(written(tmp_path, SDK1)).substitute
+
+
+def test_people_tracking_has_the_windows_of_its_own_cfar(tmp_path: Path):
+    text = "\n".join(line for line in SDK2.splitlines() if not line.startswith(("cfarCfg", "clutterRemoval")))
+    settings = read_ti_firmware(written(tmp_path, text + "\n" + PEOPLE_TRACKING))
+    cfar = settings.range_cfar
+    assert cfar is not None
+    assert (cfar.window, cfar.guard, settings.doppler_cfar, settings.static_removal) == (8, 4, None, True)
+    assert cfar.threshold == pytest.approx(10 * np.log10(5.0) / 6.0206 * 256 * 8, abs=1)
+    assert "3D People Tracking" in settings.substitute
+    level = np.full((200, 4), 20_000)
+    assert noise_level(level, cfar, cfar.window)[100].tolist() == [20_000] * 4  # a flat floor is its own noise
+
+
+def test_the_cfar_of_people_counting_is_no_cfar_of_the_out_of_box_demo(tmp_path: Path):
+    text = SDK1.replace("cfarCfg 0 2 8 4 3 0 1280", "cfarCfg 6 4 4 4 4 8 12 4 8 20 33 0\ndoaCfg 600 1875 30 1 1 0")
+    assert "2D People Counting" in read_ti_firmware(written(tmp_path, text)).substitute
 
 
 @pytest.mark.parametrize(

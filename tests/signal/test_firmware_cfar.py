@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.core.firmware_settings import FirmwareCfar, FirmwareSettings
+from mmweaver.core.boards import IWR6843_ISK
+from mmweaver.core.firmware_settings import SDK3, FirmwareCfar, FirmwareSettings
 from mmweaver.core.seeding import stream
-from mmweaver.signal.firmware_cfar import cfar_detections, detection_matrix, is_local_peak, noise_level
+from mmweaver.signal.firmware_cfar import cfar_detections, detection_matrix, is_local_peak, noise_level, reported_share
 
 
 def test_fifteen_db_are_1280_or_5120():
@@ -45,7 +46,7 @@ def test_noise_against_a_loop(average: str, cyclic: bool):
 def test_a_map_without_training_cells_detects_nothing():
     level = np.full((10, 4), 5)
     level[5, 2] = 9000
-    passed, _ = cfar_detections(level, FirmwareSettings(), 512.0)
+    passed, *_ = cfar_detections(level, FirmwareSettings(), 512.0)
     assert not passed.any()
 
 
@@ -55,7 +56,7 @@ def test_caso_detects_next_to_a_step_and_cago_does_not():
     level[27, 3] = 3000
     for average, seen in (("caso", True), ("cago", False)):
         settings = FirmwareSettings(range_cfar=FirmwareCfar(average=average, guard=1, threshold=1500))
-        passed, over_db = cfar_detections(level, settings, 512.0)
+        passed, over_db, _ = cfar_detections(level, settings, 512.0)
         assert passed[27, 3] == seen
     assert over_db.shape == level.shape
 
@@ -110,3 +111,18 @@ def test_peak_grouping_is_cyclic_in_doppler_and_limited_in_range():
     peak = is_local_peak(level, settings)
     assert peak[5, 7]
     assert not peak[5, 0]
+
+
+def test_twelve_antennas_report_three_quarters_of_their_decibels():
+    """As in recordings of an IWR6843 with thresholds of 10 dB, whose weakest points have 7.5 dB."""
+    rng = np.random.default_rng(0)
+    noise = 100 * (rng.standard_normal((1, 64, 16, 12)) + 1j * rng.standard_normal((1, 64, 16, 12)))
+    noise[0, 20, 5] += 100_000
+    config = replace(IWR6843_ISK, num_loops=16)
+    matrix = detection_matrix(noise.astype(np.complex64), "xwr16xx")
+    _, over_db, noise_db = cfar_detections(matrix.level[0], SDK3, matrix.counts_per_octave)
+    expected_db = 20 * np.log10(100_000 / 141) + 2.5  # over the mean logarithm of noise, 2.5 dB below its power
+    assert over_db[20, 5] == pytest.approx(expected_db, abs=1.0)
+    assert (over_db + noise_db)[20, 5] == pytest.approx(100, abs=0.2)
+    assert reported_share("xwr16xx", config.num_antennas) == 0.75
+    assert reported_share("xwr14xx", config.num_antennas) == 1.0

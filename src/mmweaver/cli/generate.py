@@ -112,8 +112,8 @@ class RoomInput:
     )
     photo: int | None = option("which photo of a scan or capture (default 0)", "N", rare=True)
     extra_views: str | None = option(
-        "further photos of a scan, joined to --photo by its poses, so that walls beside and behind the radar are known:"
-        " numbers, or auto for up to five that show the most",
+        "further photos of a scan, joined to --photo by its poses, so that walls next to and behind the radar are"
+        " known: numbers, or auto for up to five that show the most",
         "N,N..|auto",
         rare=True,
     )
@@ -187,7 +187,7 @@ class MotionInput:
 
     motion_file: Path | None = option(
         "a recorded motion instead of the first --text, which then only names it: .bvh, .npz (AMASS, SMPL, CMU,"
-        " joints), .npy (22 joints, HumanML3D)",
+        " joints), .c3d, .npy (22 joints, HumanML3D, MDM, Motion-X)",
         "FILE",
         name="motion",
         group="motion",

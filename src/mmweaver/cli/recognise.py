@@ -58,6 +58,12 @@ class Options(Printed):
     pictures: Any = option(
         "a picture of each recording with the points that each guard removed", "DIR", group="score", kind=Path
     )
+    abstain: float = option(
+        "no label below this confidence, which is calibrated on generated people (recognise score has the curve)",
+        "0-1",
+        default=0.0,
+        group="run",
+    )
     points: Any = option(
         "a point cloud, as mmweaver points reads it, or - for standard input", "FILE|-", group="run", kind=Path
     )
@@ -70,10 +76,12 @@ def run(asked: Options) -> int:
         InputError: For options of another action, and for files that cannot be used.
     """
     action = asked.action
-    needed = {"train": "out", "score": "recordings", "run": "points"}[action]
+    needed = {"train": "out", "score": "recordings", "run": "points abstain"}[action]
     if getattr(asked, needed) is None:
         raise InputError(f"recognise {action} needs --{needed}")
-    check_mode(asked, action, {"train": "out recordings sequences", "score": "recordings pictures", "run": "points"})
+    check_mode(
+        asked, action, {"train": "out recordings sequences", "score": "recordings pictures", "run": "points abstain"}
+    )
     return {"train": _train, "score": _score, "run": _run}[asked.action](asked)
 
 
@@ -135,8 +143,9 @@ def _run(asked: Options) -> int:
         found = iter(model.recognise(recording))
     rate_hz = model.settings.frame_rate_hz
     for one in found:
-        share = max(one.votes.values())
         outside = "  unlike anything generated" if one.is_outside else ""
-        text = f"{one.first_frame / rate_hz:8.1f} s  {one.label}  {share:.2f}{outside}"
+        outside += "" if one.has_motion else "  no motion"
+        label = one.label if one.confidence >= asked.abstain else "?"
+        text = f"{one.first_frame / rate_hz:8.1f} s  {label}  {one.confidence:.2f}{outside}"
         print(one.as_json() if asked.json else text, flush=True)
     return 0

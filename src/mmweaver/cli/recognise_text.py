@@ -24,6 +24,8 @@ def training_lines(model: "Recogniser", out: Path) -> list[str]:
         "moving points per frame: "
         + ", ".join(f"{label} {count:g}" for label, count in meta["moving_points_a_frame"].items()),
     ]
+    if substitute := meta["task"]["substitute"]:
+        text.append(f"  {substitute}")
     if "labelled_windows" in meta:
         text.append(f"with {meta['labelled_windows']} windows of labelled recordings")
     if "unlabelled_windows" in meta:
@@ -69,9 +71,24 @@ def score_lines(scores: dict[str, Any]) -> list[str]:
     text += [f"  {line}" for line in scores["hardly_distinct"]] + contradiction_lines(scores["contradictions"])
     text += [f"  {one}; name `background` or `unlabelled`, so that run does so, too" for one in scores["left_out"]]
     text += [f"  {one}" for one in removed_lines(scores["removed"])]
+    text += confidence_lines(scores["confidence"])
     if scores.get("pictures"):
         text.append(f"  {len(scores['pictures'])} pictures of what guards removed")
     return text + ([f"  warning: {scores['warning']}"] if scores["warning"] else [])
+
+
+def confidence_lines(found: dict[str, Any]) -> list[str]:
+    """Calibration, accuracy of the most confident windows, and windows without motion."""
+    rows = [row for row in found["coverage"] if row["coverage"] in (1.0, 0.8, 0.5)]
+    text = [
+        f"  confidence {found['confidence']:.2f} where {found['accuracy']:.2f} are right (calibration error"
+        f" {found['calibration_error']:.2f}); right of the most confident "
+        + ", ".join(f"{row['coverage']:.0%}: {row['accuracy']:.2f}" for row in rows)
+    ]
+    still = {name: count for name, count in found["without_motion"].items() if count}
+    if still:
+        text.append("  windows without motion: " + ", ".join(f"{name} {count}" for name, count in still.items()))
+    return text
 
 
 def accuracy_lines(scores: dict[str, Any]) -> list[str]:

@@ -61,6 +61,7 @@ class FirmwareSettings:
         static_removal: Whether static clutter is removed.
         second_peak: Share of the highest azimuth peak above which a second peak is reported as well; None disables it.
         most_objects: Maximum number of objects per frame; None keeps the limit of SDK 1 and 2.
+        substitute: Sentence on the detection chain that these settings stand in for; "" for the out-of-box demo.
 
     Raises:
         InputError: If a setting is impossible.
@@ -76,6 +77,7 @@ class FirmwareSettings:
     static_removal: bool = False
     second_peak: float | None = 0.5
     most_objects: int | None = None
+    substitute: str = ""
 
     def __post_init__(self) -> None:
         if self.device not in DEVICES:

@@ -27,7 +27,7 @@ pre{{overflow-x:auto}} img{{max-width:100%}}</style></head>
 <body><h1>B compared with A</h1>
 <img src="data:image/png;base64,{picture}" alt="Maps of A and B on the same axes and decibels, their static clutter
 along range, their points from above, and effect sizes of the features">
-<h2>What gives B away</h2>
+<h2>What separates A and B</h2>
 <p>Effect size: difference of the medians over the spread of the frames and the tolerance of the feature, with the
 95 % interval of a bootstrap. Starred: the whole interval lies beyond 1. AUC: area under the ROC curve of this feature
 alone, over frames; 50 % where A and B are alike.</p>

@@ -129,5 +129,5 @@ def _effects(axes: "Axes", comparison: "Comparison") -> None:
         yticks=[],
         xticks=[-10, -5, 0, 5, 10],
     )
-    axes.set_title("What gives B away: effect size (red: interval beyond 1)")
+    axes.set_title("What separates A and B: effect size (red: interval beyond 1)")
     axes.set_xlabel("B - A, in spreads")

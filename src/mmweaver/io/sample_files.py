@@ -47,7 +47,8 @@ class JoinedFiles:
             if first < end and last > start:
                 with open_regular(path) as file, foreign_errors(path, "unreadable ({reason})"):
                     file.seek(int(max(first - start, 0)))
-                    pieces.append(np.fromfile(file, np.uint8, int(min(last, end) - max(first, start))))
+                    held = bytearray(int(min(last, end) - max(first, start)))
+                    pieces.append(np.frombuffer(held, np.uint8)[: file.readinto(held)])
         return np.concatenate(pieces) if pieces else np.zeros(0, np.uint8)
 
 

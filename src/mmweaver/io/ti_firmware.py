@@ -1,7 +1,9 @@
 """Lines of an mmWave SDK .cfg that configure the point cloud of the demo.
 
 Reference: mmWave SDK User Guide, "Configuration (.cfg) File Format": cfarCfg, peakGrouping, clutterRemoval,
-multiObjBeamForming.
+multiObjBeamForming. Demos without cfarCfg of that form (3D People Tracking and Counting: dynamicRACfarCfg, a CFAR on a
+Capon range-azimuth heatmap, "3D People Tracking Detection Layer Tuning Guide"; vital signs; gestures) have a
+substitute.
 """
 
 import math
@@ -11,11 +13,23 @@ from typing import Any
 from mmweaver.core.errors import InputError, file_named
 from mmweaver.core.firmware_settings import AVERAGE_MODES, SDK3_MAX_OBJECTS, FirmwareCfar, FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.io.ti_cfg import Line, adc_buffer, read_ti_cfg, ti_cfg_lines
+from mmweaver.io.ti_cfg import Line, Lines, adc_buffer, read_ti_cfg, ti_cfg_lines
 
 # Number of arguments in SDK 1; SDK 2 and later prepend the sub-frame.
 PLAIN_LENGTH = {"cfarCfg": 7, "peakGrouping": 5, "clutterRemoval": 1, "multiObjBeamForming": 2}
 SDK3_CFAR_LENGTH = 9
+# Demos without cfarCfg of the out-of-box demo, by a command of their .cfg.
+OTHER_DEMOS = {
+    "dynamicRACfarCfg": "3D People Tracking",
+    "staticRACfarCfg": "3D People Tracking",
+    "dynamicRangeAngleCfg": "People Counting",
+    "doaCfg": "2D People Counting",
+    "vitalSignsCfg": "vital signs",
+    "gestureCfg": "gestures",
+}
+SUBSTITUTE_DB = 15.0  # threshold of the out-of-box demo
+COUNTING_CFAR_LENGTH = 12  # cfarCfg of 2D People Counting, which has other numbers
+HEATMAP_LENGTH = 13  # dynamicRACfarCfg: windows, guards and thresholds in range and angle
 DB_PER_OCTAVE = 20 * math.log10(2)
 
 
@@ -33,16 +47,15 @@ def read_ti_firmware(path: Path | str) -> FirmwareSettings:
         The settings.
 
     Raises:
-        InputError: If the file cannot be read, has no cfarCfg, or a number is out of range.
+        InputError: If the file cannot be read, or a number is out of range.
     """
     path = Path(path)
-    lines = ti_cfg_lines(path, PLAIN_LENGTH)
-    if "cfarCfg" not in lines:
-        raise InputError(
-            f"{path} has no cfarCfg, so its firmware's point cloud is unknown; add the line or use --points cfar"
-        )
+    lines = ti_cfg_lines(path, PLAIN_LENGTH | dict.fromkeys(OTHER_DEMOS, 0))
     config = read_ti_cfg(path)
     device = "xwr16xx" if adc_buffer(lines)[1] == 1 else "xwr14xx"
+    if "cfarCfg" not in lines or len(lines["cfarCfg"][-1].values) >= COUNTING_CFAR_LENGTH:
+        with file_named(path):
+            return _substitute(lines, config, device)
     own = {command: _drop_sub_frame(found[-1]) for command, found in lines.items() if command in PLAIN_LENGTH}
     with file_named(path):
         cfars = {line.values[0]: line for line in map(_drop_sub_frame, lines["cfarCfg"])}
@@ -66,6 +79,39 @@ def read_ti_firmware(path: Path | str) -> FirmwareSettings:
             most_objects=SDK3_MAX_OBJECTS if any(map(_is_of_sdk3, cfars.values())) else None,
             **values,
         )
+
+
+def _substitute(lines: Lines, config: RadarConfig, device: str) -> FirmwareSettings:
+    """The out-of-box demo's chain in place of another demo's.
+
+    The dynamic chain of People Tracking removes static clutter, then applies a CFAR in range and in angle to the power
+    of a Capon heatmap. Here the same windows, guards and thresholds in range apply to the detection matrix.
+    """
+    demo = next((name for command, name in OTHER_DEMOS.items() if command in lines), "")
+    removes = "clutterRemoval" not in lines or lines["clutterRemoval"][-1].values[-1] == 1
+    window, guard, threshold_db, words = 8, 4, SUBSTITUTE_DB, "its default CFAR"
+    if "dynamicRACfarCfg" in lines and len(lines["dynamicRACfarCfg"][-1].values) >= HEATMAP_LENGTH:
+        line = lines["dynamicRACfarCfg"][-1]
+        window, guard = 1 << max(round(math.log2(max(line.whole(5), 1))), 1), max(line.whole(7), 0)
+        threshold_db = 10 * math.log10(max(line.values[9], 1.0))
+        words = f"the range CFAR of dynamicRACfarCfg ({threshold_db:.1f} dB)"
+    what = f"the detection chain of TI's {demo} demo" if demo else "a firmware without cfarCfg"
+    clutter = "static clutter removed" if removes else "static clutter kept"
+    return FirmwareSettings(
+        device=device,
+        range_cfar=FirmwareCfar(
+            average="caso",
+            window=window,
+            guard=guard,
+            noise_shift=window.bit_length() - 1 + (device == "xwr16xx"),
+            threshold=_counts(threshold_db, device, config),
+        ),
+        last_range_bin=config.num_samples,
+        static_removal=removes,
+        second_peak=None,
+        most_objects=SDK3_MAX_OBJECTS,
+        substitute=f"{what} is replaced by the out-of-box demo's with {words}, {clutter}; its points per frame differ",
+    )
 
 
 def _drop_sub_frame(line: Line) -> Line:

@@ -36,8 +36,7 @@ def load_hypernetwork(file: Path) -> tuple[HyperNetwork | PowerNetwork, WeightsC
     card = read_card(file)
     if card.target is None:
         raise InputError(f"{file} holds weights of recipe {card.recipe!r}; give those of: mmweaver train hypernetwork")
-    is_anchored = bool(card.settings.get("is_anchored", True))
-    network = HyperNetwork() if card.target == SIGNAL else PowerNetwork(is_anchored=is_anchored)
+    network = HyperNetwork() if card.target == SIGNAL else PowerNetwork()
     load_into(network, file)
     return network, card
 
@@ -45,7 +44,7 @@ def load_hypernetwork(file: Path) -> tuple[HyperNetwork | PowerNetwork, WeightsC
 class FieldRoom(LearnedRoom):
     """A room whose echoes are the cells of a field, read at the radar's own resolution; first order alone."""
 
-    has_others = False
+    has_anchors = has_others = False
 
     def _encoded(self, view: SceneTensors) -> PowerEncoding:
         assert isinstance(self.network, PowerNetwork)

@@ -168,6 +168,7 @@ class LearnedRoom:
                     self._layer_rate = self._layer_rate + self.renderer.leakage(*self.board.leakage_rate)
         self._synthesis: tuple[AdcSynthesis, Tensor] | None = None
 
+    has_anchors = True  # whether echoes are those of parts of the body and their images, which breathing moves
     has_others = True  # whether second-order paths and clutter, which the network has not learned, are added by physics
 
     def _encoded(self, view: SceneTensors) -> Any:
@@ -221,8 +222,9 @@ class LearnedRoom:
             self._shown(one, joints[:, index], [other[:, index] for other in others_m])
             for index, one in enumerate(each)
         ]
-        echoes = replace(echoes, cross_section_m2=echoes.cross_section_m2 * torch.stack(shown, 1))
-        if motion.trunk_m is not None and motion.trunk_mps is not None:
+        passed = 10 ** (-motion.cover_db / 10)
+        echoes = replace(echoes, cross_section_m2=echoes.cross_section_m2 * torch.stack(shown, 1) * passed)
+        if self.has_anchors and motion.trunk_m is not None and motion.trunk_mps is not None:
             share = trunk_share(joints)
             late_m, late_mps = (
                 share @ torch.from_numpy(part).float().unflatten(0, (-1, count))[motion.num_before :, :, :, None]

@@ -75,14 +75,10 @@ class PowerEncoding:
 
 
 class PowerNetwork(ScattererNetwork):
-    """Rooms and motions -> mean echoes of cells; `encode_room` once a room, then `moving` for each motion.
+    """Rooms and motions -> mean echoes of cells; `encode_room` once per room, then `moving` for each motion."""
 
-    Without `anchored`, coordinates are those of the radar alone, as in the paper.
-    """
-
-    def __init__(self, *, is_anchored: bool = True) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self.is_anchored = is_anchored
         self.environment, self.pose = EnvironmentEncoder(), PoseEncoder()
         for encoder in (self.environment, self.pose):
             encoder.requires_grad_(False)
@@ -91,9 +87,8 @@ class PowerNetwork(ScattererNetwork):
         self.nearness = BodyNearness()
         self.room = PowerField(octave_size(ROOM_OCTAVES) + SURFACE_FEATURES + SURFACE_VALUES)
         self.person = PowerField(octave_size(PERSON_OCTAVES) + PERSON_FEATURES + BODY_VALUES)
-        if is_anchored:
-            self.room.begin_with(ROOM_LOG, ROOM_SLOPES, SURFACE_VALUES)
-            self.person.begin_with(PERSON_LOG, PERSON_SLOPES, BODY_VALUES)
+        self.room.begin_with(ROOM_LOG, ROOM_SLOPES, SURFACE_VALUES)
+        self.person.begin_with(PERSON_LOG, PERSON_SLOPES, BODY_VALUES)
 
     def train(self, mode: bool = True) -> "PowerNetwork":
         """Training or not, encoders drop nothing."""
@@ -168,28 +163,20 @@ class PowerNetwork(ScattererNetwork):
 
     def _room_coordinates(self, code: PowerEncoding, at: Tensor) -> Tensor:
         distance, cosine, known = _seen(code, at[..., 1:]).unbind(1)
-        if not self.is_anchored:
-            distance, cosine, known = (0 * part for part in (distance, cosine, known))
         behind = ((at[..., 0] - distance) / SURFACE_REACH_M).clamp(-1, 1) * known
         axes = ((at[..., 0] - MIDDLE_M) / MIDDLE_M, behind, at[..., 1], at[..., 2])
         flash = (10 * cosine - 9).clamp(min=0)  # a surface that faces the radar
         parts = [octaves(axis, count) for axis, count in zip(axes, ROOM_OCTAVES, strict=True)]
         seen = torch.stack([known, distance / 4, cosine, flash], -1)
-        return torch.cat([*parts, seen, self._known(surface_values(code.volume, at))], -1)
-
-    def _known(self, values: Tensor) -> Tensor:
-        return values if self.is_anchored else 0 * values
+        return torch.cat([*parts, seen, surface_values(code.volume, at)], -1)
 
     def _person_coordinates(self, body: Tensor, at: Tensor) -> Tensor:
         distance, speed, x, _ = body[:, :1].unbind(-1)
         range_m, velocity, cosine_x, cosine_z = at.unbind(-1)
-        if self.is_anchored:
-            axes = [(range_m - distance) / REACH[0], (velocity - speed) / REACH[1], (cosine_x - x) / REACH[2], cosine_z]
-        else:
-            axes = [(range_m - MIDDLE_M) / MIDDLE_M, velocity / REACH[1], cosine_x, cosine_z]
+        axes = [(range_m - distance) / REACH[0], (velocity - speed) / REACH[1], (cosine_x - x) / REACH[2], cosine_z]
         parts = [octaves(axis, count) for axis, count in zip(axes, PERSON_OCTAVES, strict=True)]
         place = torch.stack([range_m / 4, cosine_x], -1)
-        return torch.cat([*parts, place, self._known(self.nearness(body, at))], -1)
+        return torch.cat([*parts, place, self.nearness(body, at)], -1)
 
 
 def chosen_frames(values: Tensor, frames: Tensor) -> Tensor:

@@ -9,6 +9,7 @@ import torch
 from mmweaver.core.ray_caster import RayCaster
 from mmweaver.propagation.body_model import ScatteringBody
 from mmweaver.propagation.image_method import SpecularReflector, fresnel_radius_m
+from mmweaver.propagation.materials import SlabEchoes
 from mmweaver.propagation.occlusion import Visibility
 from mmweaver.propagation.paths import FrameClock, Interaction, Paths, StaticPaths
 from mmweaver.propagation.second_order import BodyRoomPaths
@@ -136,7 +137,10 @@ class BodyPaths(VisibleBody):
         if not seen.any():
             return []
         most = min(GHOST_SLAB_ECHOES, self.room.propagation.slab_echoes)
-        slab = face.echoes(to_corner, self.config.centre_frequency_hz, most)
+        some = face.echoes(to_corner[seen], self.config.centre_frequency_hz, most)
+        coefficient, longer = np.zeros((len(some.coefficient), *seen.shape), complex), np.zeros(seen.shape)
+        coefficient[:, seen], longer[seen] = some.coefficient, some.longer_m[-1] / max(len(some.coefficient) - 1, 1)
+        slab = SlabEchoes(coefficient, np.multiply.outer(np.arange(len(coefficient)), longer))
         over = self.gain * self.pattern(corner / np.maximum(leg_m, 1e-6)[..., None]) / length_m * taper
         micro = self.body.micro_phase[chosen]
         direct = self.pattern(-self.towards[:, chosen]) / self.distance_m[:, chosen]

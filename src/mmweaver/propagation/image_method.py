@@ -221,7 +221,7 @@ class SpecularReflector:
             field = np.zeros(longest.coefficient.shape, complex)
             field[: len(slab.coefficient)] = smooth * slab.coefficient
             fields.append(field)
-        return *fields, longest.longer_m
+        return fields[0], fields[1], longest.longer_m
 
     def echoes(self, direction: np.ndarray, frequency_hz: float, most: int = SLAB_ECHOES) -> SlabEchoes:
         """Echoes of a vertically polarised wave, as an antenna of the same polarisation receives them.

@@ -49,8 +49,8 @@ class Visibility(TensorRecord):
 
 
 MAX_FLESH_M = 0.2  # maximum distance from bone to skin
-SHADOW_M = 0.3  # how far outside the skin the shadow is followed,
-LEAST_LOST = 0.02  # where less than this share of the field is lost
+SHADOW_M = 0.15  # how far outside the skin the shadow is followed,
+LEAST_LOST = 0.05  # where less than this share of the field is lost
 BEHIND_M, EASE_M = 0.1, 0.05  # minimum distance behind the body of what it occludes, and over which the shadow sets in
 RAYS_M = 1e-9  # a wavelength without diffraction
 FRAMES_AT_ONCE = 5  # fit into the cache
@@ -189,6 +189,10 @@ def _lost(
         (1 / gone.clamp(min=0.05) + 1 / (left_m + BEHIND_M).clamp(min=0.05)).mul_(math.pi / (2 * wavelength_m)).sqrt_()
     )
     sharp.mul_(math.pi / 2)
-    lost = torch.atan((reach - gap).mul_(sharp)).add_(torch.atan(gap.add_(reach).mul_(sharp))).div_(math.pi)
     between = torch.minimum(gone, left_m).div_(EASE_M).clamp_(0, 1)
-    return lost.mul_(between).amax(dim=1).sub_(LEAST_LOST).clamp_(min=0).div_(1 - LEAST_LOST)
+    # both edges of the capsule whose near edge is deepest in the shadow
+    depth = (reach - gap).mul_(sharp)
+    deepest, index = torch.where(between > 0, depth, -math.inf).max(dim=1, keepdim=True)
+    other = (reach + gap).mul_(sharp).gather(1, index)
+    lost = torch.atan(deepest).add_(torch.atan(other)).mul_(between.gather(1, index)).div_(math.pi)[:, 0]
+    return lost.sub_(LEAST_LOST).clamp_(min=0).div_(1 - LEAST_LOST)

@@ -47,12 +47,12 @@ class MovingThing:
         """
         self.thing, row = thing, thing_rows()[thing.kind]
         rng = stream(thing.seed, "thing", thing.kind)
-        self.origin_m = np.array([*thing.place_m, floor_z_m + row["height_m"]])
-        towards = np.arctan2(-thing.place_m[1], -thing.place_m[0])
+        x_m, y_m = thing.place_m or (0.0, 0.0)
+        self.origin_m = np.array([x_m, y_m, floor_z_m + row["height_m"]])
+        towards = np.arctan2(-y_m, -x_m)
         is_travelling = any(part["law"] in ("walk", "drive") for part in row["parts"])
-        self.heading_rad = thing.heading_rad
-        if self.heading_rad is None:
-            self.heading_rad = float(towards + (np.pi / 2 if is_travelling else 0.0))
+        usual_rad = float(towards + (np.pi / 2 if is_travelling else 0.0))
+        self.heading_rad: float = usual_rad if thing.heading_rad is None else thing.heading_rad
         self.luck = rng.random(8)  # shared by the parts: their rates and speeds are one thing's
         level_db = rng.uniform(-row["spread_db"], row["spread_db"])
         self.parts, sections, phases = [], [], []

@@ -30,7 +30,7 @@ from mmweaver.propagation.ray_traced import Simulator
 from mmweaver.propagation.skin_scattering import LAMBERT, SkinEcho
 from mmweaver.propagation.static_paths import AS_PUBLISHED
 from mmweaver.recognition.point_recordings import PointRecording
-from mmweaver.recognition.random_scene import Variation, VariationSample, random_scene
+from mmweaver.recognition.random_scene import Variation, VariationSample, closed_room, random_scene
 from mmweaver.recognition.subject_simulation import (
     PerformancePrior,
     Performer,
@@ -38,7 +38,7 @@ from mmweaver.recognition.subject_simulation import (
     performer,
     task_variation,
 )
-from mmweaver.recognition.task_file import RecognitionTask, RecordingSettings
+from mmweaver.recognition.task_file import RECORDED, RecognitionTask, RecordingSettings
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from
 from mmweaver.signal.firmware import firmware_points
 from mmweaver.signal.firmware_cfar import counts_per_db
@@ -46,15 +46,18 @@ from mmweaver.signal.firmware_cfar import counts_per_db
 BEHIND_M = 0.3  # minimum distance of a wall from the body
 AT_M = 2.0  # range at which the level of diffuse clutter is specified
 NEAREST_M = 0.3
+LOSS_DB = (4.0, 8.0)  # of recorded boards relative to their link budget (core.boards.GAIN_DB)
+CLOTHES_DB = (-3.0, 3.0)
 
 
 @dataclass(frozen=True, kw_only=True)
 class PointRadar:
-    """A radar, the firmware that computes its points, and the number of skin points."""
+    """A radar, the firmware that computes its points, the number of skin points, and the kind of clouds."""
 
     radar: RadarConfig
     firmware: FirmwareSettings
     skin_points: int
+    as_recorded: bool = False  # levels, skin and rooms that give recorded clouds, instead of wide ranges
 
 
 def observed_cloud(
@@ -78,17 +81,24 @@ def observed_cloud(
         rx_gain_db=board.radar.rx_gain_db + now.gain_db,
         elevation_beamwidth_deg=now.elevation_beamwidth_deg,
     )
-    wall_m = now.wall_m
-    if wall_m is not None and isinstance(pose, PoseSequence):
-        wall_m = max(wall_m, float(pose.joints_m[..., 1].max()) + BEHIND_M)
-    looks = RadarPose(pitch_deg=-now.tilt_deg)
-    scene = scene_seen_from(random_scene(floor_z_m=-now.radar_height_m, wall_y_m=wall_m, panels=now.panels), looks)
     people = (pose,) if isinstance(pose, PoseSequence) else tuple(pose)
+    echo, wall_m = _skin(now), now.wall_m
+    if board.as_recorded:
+        rng = stream(seed, "as recorded")
+        places = np.concatenate([np.zeros((0, 2)), *(one.joints_m[..., :2].reshape(-1, 2) for one in people)])
+        room = closed_room(floor_z_m=-now.radar_height_m, people_m=places, panels=now.panels, rng=rng)
+        radar, echo = replace(radar, noise_figure_db=radar.noise_figure_db + rng.uniform(*LOSS_DB)), _recorded_skin(rng)
+    else:
+        if wall_m is not None and isinstance(pose, PoseSequence):
+            wall_m = max(wall_m, float(pose.joints_m[..., 1].max()) + BEHIND_M)
+        room = random_scene(floor_z_m=-now.radar_height_m, wall_y_m=wall_m, panels=now.panels)
+    looks = RadarPose(pitch_deg=-now.tilt_deg)
+    scene = scene_seen_from(room, looks)
     clutter = diffuse_clutter(radar, now.clutter_db, stream(seed, "diffuse clutter"))
     firmware = _less_sensitive(board.firmware, now.threshold_db, board.radar.num_antennas)
     adc = (
         Simulator(scene, radar, propagation=AS_PUBLISHED).run(
-            people_seen_from(people, looks), num_frames=frames, seed=seed, num_points=board.skin_points, echo=_skin(now)
+            people_seen_from(people, looks), num_frames=frames, seed=seed, num_points=board.skin_points, echo=echo
         )
     ).adc
     return firmware_points(replace(adc, samples=adc.samples + clutter), firmware)
@@ -108,6 +118,17 @@ def _skin(now: VariationSample) -> SkinEcho:
     reflectivity = 8 / 3 * (exponent + 1) / exponent * LAMBERT.albedo * 10 ** (now.albedo_db / 10)
     return SkinEcho(
         reflectivity=reflectivity, slope=exponent**-0.5, albedo=0.0, arms_db=now.arms_db, legs_db=now.legs_db
+    )
+
+
+def _recorded_skin(rng: np.random.Generator) -> SkinEcho:
+    """Skin as fitted to recorded signals, with a spread between clothes."""
+    usual = SkinEcho()
+    return replace(
+        usual,
+        reflectivity=usual.reflectivity * 10 ** (rng.uniform(*CLOTHES_DB) / 10),
+        arms_db=usual.arms_db + rng.uniform(*CLOTHES_DB),
+        legs_db=usual.legs_db + rng.uniform(*CLOTHES_DB),
     )
 
 
@@ -149,6 +170,7 @@ class SequenceRecipe:
     prior: PerformancePrior
     variation: Variation
     seed: int = 0
+    as_recorded: bool = False  # as in `PointRadar`
 
     @staticmethod
     def of(task: RecognitionTask, prior: PerformancePrior | None = None, seed: int = 0) -> "SequenceRecipe":
@@ -160,13 +182,22 @@ class SequenceRecipe:
             seed: Seed of everything that is sampled.
         """
         return SequenceRecipe(
-            task=task, prior=prior or PerformancePrior(), variation=task_variation(task.mount), seed=seed
+            task=task,
+            prior=prior or PerformancePrior(),
+            variation=task_variation(task.mount),
+            seed=seed,
+            as_recorded=task.clouds == RECORDED,
         )
 
     @property
     def board(self) -> PointRadar:
         """The task's radar and firmware."""
-        return PointRadar(radar=self.task.radar, firmware=self.task.firmware, skin_points=SKIN_POINTS)
+        return PointRadar(
+            radar=self.task.radar,
+            firmware=self.task.firmware,
+            skin_points=SKIN_POINTS,
+            as_recorded=self.as_recorded,
+        )
 
     @property
     def seconds(self) -> float:
@@ -187,8 +218,10 @@ class SequenceRecipe:
             "frame_rate_hz": task.recordings.frame_rate_hz,
             "once": task.recordings.has_single_performances,
             "radar": parse_json(task.radar.to_json(), "the radar"),
-            "firmware": asdict(task.firmware),
+            "firmware": {name: value for name, value in asdict(task.firmware).items() if name != "substitute"},
         }
+        if self.as_recorded:
+            values["clouds"] = RECORDED
         return json.dumps(values, sort_keys=True) + "\n"
 
 

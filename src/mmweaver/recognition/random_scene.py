@@ -4,12 +4,16 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from jaxtyping import Float
 
 from mmweaver.core.records import CameraIntrinsics, FreeSpace, Plane, RgbdPhoto, Scene
 
 Span = tuple[float, float]
 CHEST_M, TOWARDS = 1.1, (0.2, 1.1)  # height of a chest; tilt of a high radar relative to the angle down to it
 HALF_M, TALL_M, CELL_M = 5.0, 2.4, 0.1  # half width and height of the room; cell size of its free floor
+# of a closed room: distance of a wall from people, and of walls from the radar to either side, ahead and behind it
+FROM_WALL_M, ASIDE_M, BACK_M, BEHIND_RADAR_M, CEILING_M = 0.4, (1.8, 4.0), (4.0, 7.5), (0.3, 1.5), (2.4, 3.0)
+WALLS = ("metal", "concrete", "concrete", "brick")  # cupboards and boards return what a metal wall does
 CORNERS = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])[:, :, None]
 
 
@@ -161,10 +165,50 @@ def random_scene(*, floor_z_m: float, wall_y_m: float | None, panels: tuple[Pane
         wall_y_m: Distance of the wall, None for none.
         panels: Flat upright objects.
     """
-    planes = [_plane("floor", (0.0, HALF_M, floor_z_m), (0, 0, 1), (1, 0, 0), "concrete", (HALF_M, HALF_M))]
+    planes = [_floor(floor_z_m)]
     if wall_y_m is not None:
         middle = (0.0, wall_y_m, floor_z_m + TALL_M / 2)
         planes.append(_plane("wall", middle, (0, -1, 0), (1, 0, 0), "plasterboard", (HALF_M, TALL_M / 2)))
+    return _scene(planes, panels, wall_y_m)
+
+
+def closed_room(
+    *, floor_z_m: float, people_m: Float[np.ndarray, "place 2"], panels: tuple[Panel, ...], rng: np.random.Generator
+) -> Scene:
+    """A room with four walls and a ceiling around people and radar, of sampled size and materials.
+
+    Walls all around return multipath of people at 4 to 9 m and static clutter at all ranges, as recorded rooms do.
+
+    Args:
+        floor_z_m: Height of the floor relative to the radar in metres, negative.
+        people_m: Places (place, 2), x right and y away, at which people are; none for an empty room.
+        panels: Flat upright objects.
+        rng: Random stream of the room.
+    """
+    aside_m = np.max(np.abs(people_m[:, 0]), initial=1.0) + FROM_WALL_M
+    left, right = -max(rng.uniform(*ASIDE_M), aside_m), max(rng.uniform(*ASIDE_M), aside_m)
+    far = max(rng.uniform(*BACK_M), np.max(people_m[:, 1], initial=3.0) + FROM_WALL_M)
+    near, tall = -rng.uniform(*BEHIND_RADAR_M), rng.uniform(*CEILING_M)
+    x, y, z = (left + right) / 2, (near + far) / 2, floor_z_m + tall / 2
+    across, along, up = (right - left) / 2, (far - near) / 2, tall / 2
+    walls = (
+        ((x, far, z), (0, -1, 0), (1, 0, 0), across),
+        ((left, y, z), (1, 0, 0), (0, 1, 0), along),
+        ((right, y, z), (-1, 0, 0), (0, 1, 0), along),
+        ((x, near, z), (0, 1, 0), (1, 0, 0), across),
+    )
+    planes = [_floor(floor_z_m)]
+    planes += [_plane("wall", *wall, str(rng.choice(WALLS)), (half, up)) for *wall, half in walls]
+    ceiling = (x, y, floor_z_m + tall)
+    planes.append(_plane("ceiling", ceiling, (0, 0, -1), (1, 0, 0), "concrete", (across, along)))
+    return _scene(planes, panels, far)
+
+
+def _floor(floor_z_m: float) -> Plane:
+    return _plane("floor", (0.0, HALF_M, floor_z_m), (0, 0, 1), (1, 0, 0), "concrete", (HALF_M, HALF_M))
+
+
+def _scene(planes: list[Plane], panels: tuple[Panel, ...], free_y_m: float | None) -> Scene:
     flat = list(planes)
     for panel in panels:
         cos, sin = np.cos(panel.turn_rad), np.sin(panel.turn_rad)
@@ -178,8 +222,8 @@ def random_scene(*, floor_z_m: float, wall_y_m: float | None, panels: tuple[Pane
     faces = 4 * np.arange(len(flat))[:, None, None] + np.array([(0, 1, 2), (0, 2, 3)])
     x_m, y_m = np.arange(-HALF_M, HALF_M, CELL_M), np.arange(0.0, 2 * HALF_M, CELL_M)
     free = np.ones((len(y_m), len(x_m)), bool)
-    if wall_y_m is not None:
-        free &= y_m[:, None] < wall_y_m
+    if free_y_m is not None:
+        free &= y_m[:, None] < free_y_m
     return Scene(
         photo=RgbdPhoto(  # with everything ahead in view, since motion planning tests what is in the picture
             rgb=np.zeros((2, 2, 3), np.uint8),
@@ -192,14 +236,14 @@ def random_scene(*, floor_z_m: float, wall_y_m: float | None, panels: tuple[Pane
         face_material=np.repeat(np.arange(len(flat)), 2).astype(np.int32),
         material_names=tuple(plane.material for plane in flat),
         planes=tuple(planes),
-        floor_z_m=float(floor_z_m),
+        floor_z_m=float(planes[0].centre_m[2]),
         free_space=FreeSpace(x_m=x_m, y_m=y_m, is_free=free, is_seen=free),
         seats=(),
         assumptions=("the room is sampled at random",),
     )
 
 
-def _plane(kind: str, centre: tuple, normal: tuple, u: tuple, material: str, half: tuple[float, float]) -> Plane:
+def _plane(kind: str, centre: Any, normal: Any, u: Any, material: str, half: tuple[float, float]) -> Plane:
     n, axis = np.asarray(normal, float), np.asarray(u, float)
     return Plane(
         kind=kind,

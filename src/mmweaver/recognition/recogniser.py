@@ -20,8 +20,9 @@ from mmweaver.core.safe_files.regular_files import check_exists
 from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.recognition.background_mask import NO_CELLS
+from mmweaver.recognition.confidence import probabilities
 from mmweaver.recognition.guards import GUARDS, WindowFilter
-from mmweaver.recognition.point_recordings import PointRecording, windows_of
+from mmweaver.recognition.point_recordings import PointRecording, is_moving, windows_of
 from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.recording_checks import contradictions
 from mmweaver.recognition.spatiotemporal_features import spatiotemporal_features
@@ -47,11 +48,14 @@ class Recognition:
     label: str
     votes: dict[str, float]  # by label, with a sum of 1
     is_outside: bool  # the window is out of distribution: do not trust the label
+    confidence: float = 0.0  # calibrated probability that the label is right, on generated people
+    has_motion: bool = True  # whether any point moves; without, the label is a guess
 
     def as_json(self) -> str:
         """The record as one line of JSON."""
         votes = {name: round(value, 3) for name, value in self.votes.items()}
-        return json.dumps({**asdict(self), "votes": votes}, ensure_ascii=False)
+        rounded = {"votes": votes, "confidence": round(self.confidence, 3)}
+        return json.dumps({**asdict(self), **rounded}, ensure_ascii=False)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -104,6 +108,11 @@ class Recogniser:
         """
         return self.trees.probabilities(features)
 
+    def probabilities(self, votes: Float[np.ndarray, "window label"]) -> Float[np.ndarray, "window label"]:
+        """Calibrated probability of each label (window, label); shares of votes for models without calibration."""
+        exponent = self.meta.get("confidence_exponent")
+        return votes if exponent is None else probabilities(votes, float(exponent))
+
     def is_outside(self, features: Features) -> Bool[np.ndarray, " window"]:
         """Mask (window,) of windows that are out of the distribution of generated ones."""
         return outside_share(features, self.generated) > self.outside_above
@@ -123,7 +132,8 @@ class Recogniser:
         """Labels windows."""
         if not windows:
             return []
-        features = self.features(windows)
+        left = [self.points(window) for window in windows]
+        features = recognition_features(left, self.names)
         votes, outside = self.votes(features), self.is_outside(features)
         return [
             Recognition(
@@ -132,8 +142,12 @@ class Recogniser:
                 label=self.labels[int(np.argmax(vote))],
                 votes=dict(zip(self.labels, map(float, vote), strict=True)),
                 is_outside=bool(out),
+                confidence=float(sure.max()),
+                has_motion=bool(is_moving(points.cloud).any()),
             )
-            for window, vote, out in zip(windows, votes, outside, strict=True)
+            for window, points, vote, sure, out in zip(
+                windows, left, votes, self.probabilities(votes), outside, strict=True
+            )
         ]
 
     def recognise_cloud(self, cloud: PointCloud, num_frames: int) -> list[Recognition]:
@@ -250,7 +264,7 @@ def load_recogniser(folder: Path | str) -> Recogniser:
     if "recorded" in held:
         raise InputError(f"{folder} was trained with matching of features, which is gone; train the recogniser again")
     background, persistent = (
-        held.numbers(name, ("cell", 2), kinds="iu", low=-1000, high=1000) if name in held else NO_CELLS
+        held.numbers(name, (f"{name} cell", 2), kinds="iu", low=-1000, high=1000) if name in held else NO_CELLS
         for name in ("busy", "persistent")
     )
     outside_above = meta.get("outside_above")

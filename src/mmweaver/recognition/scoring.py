@@ -10,6 +10,7 @@ from jaxtyping import Float, Int
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.recognition.background_mask import left_out_lines, persistent_motion_cells
+from mmweaver.recognition.confidence import Calibration, coverage_curve
 from mmweaver.recognition.guard_report import removed_points
 from mmweaver.recognition.point_recordings import PointRecording, windows_of
 from mmweaver.recognition.recogniser import FEWEST, QUANTILES, Features, Quantiles, Recogniser
@@ -149,8 +150,9 @@ def score_recordings(model: Recogniser, recordings: Sequence[PointRecording]) ->
         `window`, `three_windows` and `recording`; `generated_on_generated` (accuracy on generated people that were held
         out); `distance` (recorded windows against generated ones, without labels); `warning` where the recordings are
         out of distribution; `contradictions` with the task; `left_out`, places with persistent motion that were
-        ignored; `removed`, what guards removed from each recording, and its missing frames; and `hardly_distinct`,
-        labels that the radar cannot discriminate.
+        ignored; `confidence`, its calibration and the accuracy of the most confident windows; `removed`, what guards
+        removed from each recording, and its missing frames; and `hardly_distinct`, labels that the radar cannot
+        discriminate.
 
     Raises:
         InputError: If the recordings contain no complete window.
@@ -185,7 +187,34 @@ def score_recordings(model: Recogniser, recordings: Sequence[PointRecording]) ->
         "contradictions": model.contradictions(recordings),
         "left_out": left_out,
         "removed": removed,
+        "confidence": confidence_report(model, evaluation, [model.points(window) for window in windows]),
         "hardly_distinct": hardly_distinct(model),
+    }
+
+
+def confidence_report(model: Recogniser, evaluation: Evaluation, windows: Sequence[PointRecording]) -> dict[str, Any]:
+    """How far confidence can be trusted on recordings.
+
+    Args:
+        model: The recogniser.
+        evaluation: Its votes.
+        windows: The same windows without the points that guards removed.
+
+    Returns:
+        `calibration_error` (expected, over ten bins), mean `confidence` and `accuracy` of windows; `coverage`, accuracy
+        of the most confident windows; `without_motion`, number of windows without any moving point by true activity.
+    """
+    confidence = model.probabilities(evaluation.votes).max(axis=1)
+    is_right = evaluation.guess == evaluation.truth
+    found = Calibration.of(confidence, is_right)
+    still = np.array([moving_points(window) == 0 for window in windows])
+    count = np.bincount(evaluation.truth[still], minlength=len(evaluation.classes))
+    return {
+        "calibration_error": round(found.error, 4),
+        "confidence": round(found.confidence, 4),
+        "accuracy": round(found.accuracy, 4),
+        "coverage": coverage_curve(confidence, is_right),
+        "without_motion": dict(zip(evaluation.classes, count.tolist(), strict=True)),
     }
 
 

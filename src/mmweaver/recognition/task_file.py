@@ -2,6 +2,7 @@
 
 radar = "profile.cfg"
 window_s = 2.0
+clouds = "recorded"                # optional: "varied" has wide ranges of levels and open rooms
 background = "empty_place.dat"     # optional: a recording of the empty place
 unlabelled = "some_recordings/"    # optional: recordings without labels
 
@@ -38,7 +39,7 @@ from mmweaver.motion.register_activity import NOBODY, activities_of
 
 # Known names of each table, with the limits of those that are numbers.
 TABLES: dict[str, dict[str, tuple[float, float] | None]] = {
-    "": dict.fromkeys(("radar", "background", "unlabelled", "activities", "mount", "recordings"))
+    "": dict.fromkeys(("radar", "clouds", "background", "unlabelled", "activities", "mount", "recordings"))
     | {
         "window_s": (0.2, 60.0),
     },
@@ -49,6 +50,7 @@ TABLES: dict[str, dict[str, tuple[float, float] | None]] = {
 DIRECTIONS = {"right": (0, 1), "left": (0, -1), "ahead": (1, 1), "up": (2, 1), "down": (2, -1)}
 VELOCITIES = {"velocity": 1, "velocity_away": 1, "velocity_towards": -1}
 STRENGTHS = ("snr", "snr_db")
+VARIED, RECORDED = CLOUDS = ("varied", "recorded")
 AXES = ("right or left", "ahead", "up or down")
 
 
@@ -156,6 +158,7 @@ class RecognitionTask:
     mount: Mount = Mount()
     background: Path | None = None
     unlabelled: Path | None = None
+    clouds: str = VARIED  # RECORDED: with the levels, rooms and skin of recorded clouds
 
 
 def read_task(file: Path | str) -> RecognitionTask:
@@ -179,9 +182,14 @@ def read_task(file: Path | str) -> RecognitionTask:
     rate_hz = recordings.get("frame_rate_hz") or 1 / radar.frame_period_s
     gap, columns = recordings.get("gap_frames"), recordings.get("columns")
     activities = activities_of(content, file, with_nobody=True)
+    firmware = load_firmware(source)
+    # levels and rooms were fitted to clouds of an IWR6843; tasks of the IWR1443 were developed with wide ranges
+    clouds = content.get("clouds", RECORDED if firmware.device == "xwr16xx" else VARIED)
+    if clouds not in CLOUDS:
+        raise InputError(f"{file}: clouds must be {' or '.join(CLOUDS)}, not {clouds!r}")
     return RecognitionTask(
         radar=replace(radar, frame_period_s=1 / rate_hz),
-        firmware=load_firmware(source),
+        firmware=firmware,
         activities=activities,
         recordings=RecordingSettings(
             labels=tuple(sorted(activities)),
@@ -194,6 +202,7 @@ def read_task(file: Path | str) -> RecognitionTask:
         mount=Mount(**mount),
         background=_place(content, "background", file),
         unlabelled=_place(content, "unlabelled", file),
+        clouds=clouds,
     )
 
 

@@ -22,6 +22,7 @@ from mmweaver.core.optional_packages import need
 from mmweaver.core.output_checks import check_output_folder
 from mmweaver.core.seeding import stream
 from mmweaver.recognition.background_mask import NO_CELLS, left_out_lines, persistent_motion_cells
+from mmweaver.recognition.confidence import fitted_exponent
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
 from mmweaver.recognition.guard_report import removed_points
 from mmweaver.recognition.point_recordings import (
@@ -265,6 +266,7 @@ def train_recogniser(
         "options": asdict(options),
         "task": {
             "radar": task.radar.name,
+            "substitute": task.firmware.substitute,
             "activities": {label: list(lines) for label, lines in task.activities.items()},
             "mount": asdict(task.mount),
             "background": task.background and task.background.name,
@@ -324,6 +326,7 @@ def fitted(
         own, options = own_trees(made, known, labels, fewest_recordings(labelled, task.recordings.labels), options)
         made = made.joined(known, labels, options.labelled_weight)
         meta |= {"labelled_windows": len(labelled), "trees_of_labelled_alone": 0 if own is None else len(own.root)}
+    meta["confidence_exponent"] = meta["generated_on_generated"].pop("confidence_exponent")
     trees = made.trees(options)
     if unlabelled:
         features = recognition_features([made.points(window) for window in unlabelled], made.names)
@@ -349,7 +352,8 @@ def generated_accuracy(made: TrainingWindows, options: TrainingOptions) -> dict[
         options: How trees are grown.
 
     Returns:
-        Accuracy, number of windows, chance level, and `confusion` (true labels in rows, recognised ones in columns).
+        Accuracy, number of windows, chance level, `confusion` (true labels in rows, recognised ones in columns), and
+        the exponent that calibrates votes.
     """
     held = made.person % HELD_OUT == HELD_OUT - 1
     if held.all() or not held.any():
@@ -361,4 +365,5 @@ def generated_accuracy(made: TrainingWindows, options: TrainingOptions) -> dict[
         "windows": len(truth),
         "chance": round(1 / classes, 4),
         "confusion": confusion(truth, guess, classes).tolist(),
+        "confidence_exponent": round(fitted_exponent(votes, truth), 4),
     }

@@ -83,7 +83,7 @@ def _opened(files: tuple[Path, ...], config: RadarConfig, iq_order: str | None, 
             lost = sum(gap.num_bytes for gap in gaps)
             where = _numbers(sorted({gap.at // bytes_of_frame(config) for gap in gaps}))
             notes.append(
-                f"{lost // PACKET_BYTES} packets of {PACKET_BYTES} bytes are missing from the file, in frame {where}:"
+                f"{lost // PACKET_BYTES} packets of {PACKET_BYTES} bytes are missing from the file, in frames {where}:"
                 " the frames after them were read where they are"
             )
     num_frames, rest = divmod(source.size, bytes_of_frame(config))
@@ -152,13 +152,13 @@ def loss_sentences(lost_share: LostShare) -> list[str]:
     sentences = []
     if len(hurt):
         sentences.append(
-            f"{share}: {is_lost.sum()} chirps, in frame {_numbers(hurt)}, take no part in Doppler and angle and were"
+            f"{share}: {is_lost.sum()} chirps, in frames {_numbers(hurt)}, take no part in Doppler and angle and were"
             " estimated from the others"
         )
     if left_out.any():
         sentences.append(
-            f"{'' if len(hurt) else share + '; '}frame {_numbers(np.flatnonzero(left_out))} lacks most chirps of a"
-            " transmitter and is left out (zero)"
+            f"{'' if len(hurt) else share + '; '}frames {_numbers(np.flatnonzero(left_out))} lack most chirps of a"
+            " transmitter and are left out (zero)"
         )
     return sentences
 

@@ -80,3 +80,13 @@ def detect(cube: RadarCube, adc: AdcCube | None, points: str, firmware: Firmware
     if detector is _firmware and firmware is not None:
         return firmware_points(cube if adc is None else adc, firmware)
     return detector(cube, adc)
+
+
+def substitutes(points: str, firmware: FirmwareSettings | None) -> tuple[str, ...]:
+    """Sentence on the detection chain that the firmware's settings stand in for, if there is one.
+
+    Args:
+        points: The detector.
+        firmware: Settings of the firmware's detector.
+    """
+    return (firmware.substitute,) if points == "firmware" and firmware is not None and firmware.substitute else ()

@@ -16,7 +16,7 @@ from mmweaver.core.records import AdcCube, PointCloud, RadarCube
 from mmweaver.core.shapes import PerIndex, PerPoint
 from mmweaver.core.virtual_array import azimuth_row, elevation_rows
 from mmweaver.signal.cube import adc_from_cube
-from mmweaver.signal.firmware_cfar import cfar_detections, detection_matrix, is_local_peak
+from mmweaver.signal.firmware_cfar import cfar_detections, detection_matrix, is_local_peak, reported_share
 
 AZIMUTH_BINS = 64
 BLACKMAN = (0.42, 0.5, 0.08)
@@ -33,12 +33,15 @@ class FirmwareCloud(PointCloud):
 
     Attributes:
         intensity: Magnitude in the device's counts, averaged over the antennas.
-        snr_db: Level over the noise estimate of the range CFAR (of the Doppler CFAR if there is none in range).
+        snr_db: Level over the noise estimate of the range CFAR (of the Doppler CFAR if there is none in range), as the
+            device reports it (`firmware_cfar.reported_share`).
+        noise_db: That noise estimate in dB of one count, likewise.
         range_bin: Bin of the device's range FFT.
         doppler_bin: Doppler bin; num_loops // 2 is zero velocity.
     """
 
     intensity: PerPoint
+    noise_db: PerPoint
     range_bin: Int[np.ndarray, " point"]
     doppler_bin: Int[np.ndarray, " point"]
 
@@ -160,7 +163,8 @@ def _objects(
     settings: FirmwareSettings,
 ) -> dict[str, np.ndarray]:
     """Objects of one frame in the order of the device's list; `up` is the direction cosine in its half wavelengths."""
-    passed, snr = cfar_detections(level, settings, counts_per_octave)
+    passed, snr_db, noise_db = cfar_detections(level, settings, counts_per_octave)
+    share = reported_share(settings.device, config.num_antennas)
     passed &= is_local_peak(level, settings)
     # the list is filled in FFT order: zero and positive velocities, then negative ones
     loops = config.num_loops
@@ -184,7 +188,8 @@ def _objects(
         "azimuth_bin": azimuth,
         "up": _elevation(signal[which], beams[which, azimuth], azimuth, across, config),
         "intensity": np.abs(beams[which, azimuth]),
-        "snr_db": snr[row, column][which],
+        "snr_db": share * snr_db[row, column][which],
+        "noise_db": share * noise_db[row, column][which],
     }
 
 
@@ -232,7 +237,7 @@ def _signed(azimuth_bin: np.ndarray) -> np.ndarray:
 
 def _cloud(found: list[dict[str, np.ndarray]], config: RadarConfig) -> FirmwareCloud:
     """Objects of all frames with their positions; y is 0 for impossible angles, as on the device."""
-    names = ("frame", "range_bin", "doppler_bin", "azimuth_bin", "up", "intensity", "snr_db")
+    names = ("frame", "range_bin", "doppler_bin", "azimuth_bin", "up", "intensity", "snr_db", "noise_db")
     every = {name: np.concatenate([np.zeros(0), *(objects[name] for objects in found)]) for name in names}
     range_bin, doppler_bin = every["range_bin"].astype(int), every["doppler_bin"].astype(int)
     step_m = range_step_m(config)
@@ -250,6 +255,7 @@ def _cloud(found: list[dict[str, np.ndarray]], config: RadarConfig) -> FirmwareC
         radial_velocity_mps=config.radial_velocity_mps[doppler_bin],
         snr_db=every["snr_db"],
         intensity=every["intensity"],
+        noise_db=every["noise_db"],
         range_bin=range_bin,
         doppler_bin=doppler_bin,
     )

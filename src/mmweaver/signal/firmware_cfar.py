@@ -42,6 +42,22 @@ def counts_per_db(device: str, num_antennas: int) -> float:
     return float(octave / DB_PER_OCTAVE)
 
 
+def reported_share(device: str, num_antennas: int) -> float:
+    """Reported dB per dB of level, in the side information of SDK 3 (TLV 7).
+
+    The firmware of "xwr16xx" and later devices divides the sum over the antennas by the next power of two, corrects the
+    threshold for that, but not the reported SNR and noise: with twelve antennas 10 dB are reported as 7.5 dB.
+
+    Args:
+        device: "xwr14xx" or "xwr16xx".
+        num_antennas: Number of virtual antennas.
+
+    >>> reported_share("xwr16xx", 12), reported_share("xwr16xx", 8)
+    (0.75, 1.0)
+    """
+    return num_antennas / (1 << (num_antennas - 1).bit_length()) if device == "xwr16xx" else 1.0
+
+
 def detection_matrix(spectrum: Complex[np.ndarray, "frame range doppler antenna"], device: str) -> DetectionMatrix:
     """Sum of the antennas' log2 magnitudes: Q8 ("xwr16xx"), or Q9 divided by a power of two ("xwr14xx").
 
@@ -61,7 +77,7 @@ def detection_matrix(spectrum: Complex[np.ndarray, "frame range doppler antenna"
 
 def cfar_detections(
     level: Level, settings: FirmwareSettings, counts_per_octave: float
-) -> tuple[Bool[np.ndarray, "range doppler"], Float[np.ndarray, "range doppler"]]:
+) -> tuple[Bool[np.ndarray, "range doppler"], Float[np.ndarray, "range doppler"], Float[np.ndarray, "range doppler"]]:
     """Applies every CFAR stage of the settings.
 
     Args:
@@ -70,11 +86,11 @@ def cfar_detections(
         counts_per_octave: As in `DetectionMatrix`.
 
     Returns:
-        Mask (range, doppler) of the cells that pass all stages, and their level in dB over the noise of the first
-        stage.
+        Mask (range, doppler) of the cells that pass all stages, their level in dB over the noise of the first stage,
+        and this noise in dB of one count.
     """
     passed = np.ones(level.shape, bool)
-    over: np.ndarray | None = None
+    first: np.ndarray | None = None
     for cfar, is_doppler in ((settings.range_cfar, False), (settings.doppler_cfar, True)):
         if cfar is None:
             continue
@@ -85,9 +101,10 @@ def cfar_detections(
         noise = np.fft.fftshift(noise.T, axes=1) if is_doppler else noise
         excess = level - noise
         passed &= excess > cfar.threshold
-        over = excess if over is None else over
-    assert over is not None, "FirmwareSettings has at least one CFAR"
-    return passed, over * (DB_PER_OCTAVE / counts_per_octave)
+        first = noise if first is None else first
+    assert first is not None, "FirmwareSettings has at least one CFAR"
+    count_db = DB_PER_OCTAVE / counts_per_octave
+    return passed, (level - first) * count_db, first * count_db
 
 
 def noise_level(level: Int[np.ndarray, "along across"], cfar: FirmwareCfar, half: int) -> Int[np.ndarray, "along _"]:

@@ -77,7 +77,6 @@ class HypernetworkRecipe(LoopRecipe):
     frames: int = 3  # target power: sampled from each sequence
     warm_up_steps: int = 30
     mirror: bool = True  # target power: reflect every second batch left-right
-    is_anchored: bool = True  # target power: coordinates are counted from photographed surfaces and from the body, too
     reads_codes: bool = True  # target power: else the same is written for all, to see what codes are worth
 
     @classmethod
@@ -258,7 +257,7 @@ def _power_learner(
 def initial_power_network(recipe: HypernetworkRecipe) -> PowerNetwork:
     """The network that training starts from, but for what is measured over the training set."""
     torch.manual_seed(recipe.seed)
-    network = PowerNetwork(is_anchored=recipe.is_anchored)
+    network = PowerNetwork()
     weaver, _ = load_weights(shipped_weights())
     network.environment.load_state_dict(weaver.environment.state_dict())
     network.pose.load_state_dict(weaver.pose.state_dict())

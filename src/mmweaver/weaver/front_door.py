@@ -42,7 +42,7 @@ from mmweaver.propagation.rays import Rays
 from mmweaver.propagation.static_paths import ALL_PATHS
 from mmweaver.propagation.things import ThingPaths
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from, unseen_notes
-from mmweaver.signal.detection import check_points, detect, needs_adc
+from mmweaver.signal.detection import check_points, detect, needs_adc, substitutes
 from mmweaver.weaver.composition import compose_request, furnished_room, widened, with_targets
 from mmweaver.weaver.generation import Generation, Room
 from mmweaver.weaver.parsed_request import ParsedRequest, parse
@@ -436,7 +436,11 @@ class Weaver(RoomReader):
             "firmware": self.firmware_of(board) if self.points == "firmware" else None,
             "inputs": room.inputs | _motion_input(request.motion),
             "camera": room.scene.photo.intrinsics,
-            "assumed": _assumed(room.scene, people, (*signal.assumptions, *request.config.notes)),
+            "assumed": _assumed(
+                room.scene,
+                people,
+                (*signal.assumptions, *request.config.notes, *substitutes(self.points, self.firmware)),
+            ),
             **_people_meta(poses, people),
         }
 

@@ -105,6 +105,32 @@ def test_people_tracking_has_compressed_points(tmp_path: Path):
     assert np.arcsin(cloud.z_m[0] / 2.0) == pytest.approx(0.1)
     assert cloud.radial_velocity_mps == pytest.approx([0.4, -0.2])
     assert cloud.snr_db == pytest.approx(10 * np.log10([20, 10]))
+    assert found.tracks.number.tolist() == [5]
+    assert found.tracks.place_m.tolist() == [[0, 1, 2]]
+    assert found.tracks.velocity_mps.tolist() == [[3, 4, 5]]
+
+
+def test_float_spherical_points_are_read(tmp_path: Path):
+    points = struct.pack("<4f", 2.0, 0.5, 0.25, -0.75)
+    (tmp_path / "log.dat").write_bytes(packet(4, [(1000, points), (7, struct.pack("<2h", 173, 360))], 1))
+    found = read_ti_uart(tmp_path / "log.dat").points
+    expected = [2 * np.cos(0.25) * np.sin(0.5), 2 * np.cos(0.25) * np.cos(0.5), 2 * np.sin(0.25)]
+    assert found.xyz_m[0] == pytest.approx(expected)
+    assert (found.radial_velocity_mps[0], found.snr_db[0]) == pytest.approx((-0.75, 17.3))
+
+
+@pytest.mark.parametrize("kind", [1010, 308])
+def test_a_log_of_targets_alone_is_a_recording_of_its_targets(tmp_path: Path, kind: int):
+    targets = [struct.pack("<I27f", 3, 3.0, 4.0, 0.0, 0.6, 0.8, 0.0, *[0.0] * 21) for _ in range(2)]
+    packets = [packet(7, [(kind, targets[0])], 0), packet(9, [(kind, targets[0] + targets[1])], 0)]
+    (tmp_path / "log.dat").write_bytes(b"".join(packets))
+    found = read_ti_uart(tmp_path / "log.dat").points
+    assert found.frame.tolist() == [0, 2, 2]
+    assert found.missing is not None
+    assert found.missing.tolist() == [1]
+    assert found.y_m.tolist() == [4.0] * 3
+    assert found.radial_velocity_mps == pytest.approx([1.0] * 3)  # 0.6 * 0.6 + 0.8 * 0.8, away
+    assert "targets" in found.notes[-1]
 
 
 def test_csv_logs(tmp_path: Path):

@@ -14,8 +14,8 @@ def cloud(num: int, seed: int, shift_m: float = 0.0, loud: float = 1.0, speed: f
         frame=np.arange(num) // 5, x_m=0.2 * rng.standard_normal(num),
         y_m=1.8 + shift_m + 0.1 * rng.standard_normal(num),
         z_m=0.2 * rng.standard_normal(num), radial_velocity_mps=speed * rng.integers(-2, 3, num).astype(float),
-        snr_db=np.full(num, 20.0), intensity=loud * (10 + 5 * rng.random(num)), range_bin=np.zeros(num, int),
-        doppler_bin=np.zeros(num, int),
+        snr_db=np.full(num, 20.0), intensity=loud * (10 + 5 * rng.random(num)), noise_db=np.zeros(num),
+        range_bin=np.zeros(num, int), doppler_bin=np.zeros(num, int),
     )  # fmt: skip
 
 
@@ -55,7 +55,7 @@ def test_what_does_not_apply_is_missing_and_empty_frames_count():
     none = np.zeros(0)
     empty = FirmwareCloud(
         frame=np.zeros(0, int), x_m=none, y_m=none, z_m=none, radial_velocity_mps=none, snr_db=none, intensity=none,
-        range_bin=np.zeros(0, int), doppler_bin=np.zeros(0, int),
+        noise_db=none, range_bin=np.zeros(0, int), doppler_bin=np.zeros(0, int),
     )  # fmt: skip
     ours = [(empty, *piece[1:]) for piece in pieces()]
     scores = score(ours, pieces())

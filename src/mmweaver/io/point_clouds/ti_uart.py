@@ -3,9 +3,10 @@
 Out-of-box demos: TLV 1 contains detected points, x, y, z in m and velocity in m/s as float32 (SDK 3 and later), or
 integers with a Q format (SDK 1 and 2); TLV 7 SNR and noise in 0.1 dB; TLV 301 compressed points with their units
 (xWRL6432, xWRL1432). The header ends with a sub-frame number, except on the xWR1443. 3D People Tracking: TLV 1020
-contains compressed spherical points with their units. Its predecessor, 3D People Counting, has a different header and
-TLV lengths that include their own eight bytes; its TLV 6 equals TLV 1020. Truncated packets and packets with
-inconsistent lengths are skipped and counted.
+contains compressed spherical points with their units, TLV 1000 spherical points as float32, TLV 1010 (308 on xWRL) the
+list of tracked targets. Its predecessor, 3D People Counting, has a different header and TLV lengths that include their
+own eight bytes; its TLV 6 equals TLV 1020, its TLV 7 TLV 1010. Truncated packets and packets with inconsistent lengths
+are skipped and counted.
 
 Frames are those that the board counted: packets that are missing are frames without points.
 
@@ -23,7 +24,7 @@ import numpy as np
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.regular_files import MEGABYTE, read_bytes
-from mmweaver.io.point_clouds.point_log import LoggedCloud, counted_frames, logged_cloud, point_format
+from mmweaver.io.point_clouds.point_log import CountedFrames, LoggedCloud, counted_frames, logged_cloud, point_format
 
 MAGIC = bytes([2, 1, 4, 3, 6, 5, 8, 7])
 MAX_BYTES = 2000 * MEGABYTE
@@ -34,7 +35,10 @@ MAX_PACKET, MAX_TLVS = 1 << 17, 30
 MAX_PADDING = 32  # bytes after the last TLV of a packet
 COUNTING_2D_HEADER = struct.Struct("<8s10I2H")  # ..., time, length, frame, sub-frame, margins, times, TLVs, checksum
 POINTS, SIDE_INFO, COMPRESSED, SPHERICAL, COUNTED = 1, 7, 301, 1020, 6
-POINT_KINDS = frozenset((POINTS, COMPRESSED, SPHERICAL))
+FLOAT_SPHERICAL, TARGETS, TARGETS_LOW_POWER, COUNTED_TARGETS = 1000, 1010, 308, 7
+POINT_KINDS = frozenset((POINTS, COMPRESSED, SPHERICAL, FLOAT_SPHERICAL))
+# a target: number, place, velocity and acceleration in x, y, z; covariance, gain and confidence follow
+TARGET = np.dtype({"names": ["number", "motion"], "formats": ["<u4", ("<f4", 9)], "offsets": [0, 4], "itemsize": 112})
 OUT_OF_BOX = frozenset(range(1, 10))  # TLVs of the out-of-box demos, which omit TLV 1 from a frame without points
 MAX_KIND = 2000  # TLV type
 WITHOUT_SUB_FRAME = 0x1443  # lower half of the platform
@@ -51,21 +55,33 @@ class ByteSource(Protocol):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Tracks:
+    """Targets of the board's tracker, (target,): frame, number, place in m and velocity in m/s (target, 3)."""
+
+    frame: np.ndarray
+    number: np.ndarray
+    place_m: np.ndarray
+    velocity_mps: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True)
 class UartLog:
-    """Points of a log by the board's own frames, and what was skipped."""
+    """Points and targets of a log by the board's own frames, and what was skipped."""
 
     points: LoggedCloud
+    tracks: Tracks
     frame_number: np.ndarray  # (packet,) counted by the board
     skipped: int  # damaged packets
 
 
 class Packet(NamedTuple):
-    """One packet: frame number, points (point, 6) as in `point_packets`, its end in the data, and types of its TLVs."""
+    """One packet: frame number, points (point, 6) as in `point_packets`, end in the data, types of TLVs, targets."""
 
     number: int
     points: np.ndarray
     end: int
     kinds: frozenset[int] = frozenset()
+    targets: np.ndarray = np.zeros(0, TARGET)
 
 
 @point_format("ti_uart", ".dat of a TI demo's data port", lambda path, head: MAGIC in head)
@@ -98,13 +114,21 @@ def read_ti_uart(path: Path | str) -> UartLog:
         raise InputError(f"{path} holds no packet of a TI demo's data port; log the port at its data rate, in binary")
     kinds = frozenset().union(*(packet.kinds for packet in packets))
     table = np.concatenate([packet.points for packet in packets])
-    if not kinds & POINT_KINDS and kinds - OUT_OF_BOX:
+    counted = counted_frames(np.array([packet.number for packet in packets]))
+    tracks = _tracks(packets, counted.frame)
+    no_points = not kinds & POINT_KINDS and bool(kinds - OUT_OF_BOX)
+    if no_points and not len(tracks.frame):
         raise InputError(
             f"{path} holds {len(packets)} packets, but no point cloud: their TLVs are"
             f" {', '.join(map(str, sorted(kinds)))}, of a demo that reports something else"
         )
-    number = np.array([packet.number for packet in packets])
-    counted = counted_frames(number)
+    if no_points:
+        return UartLog(
+            points=_tracked_points(tracks, counted, skipped),
+            tracks=tracks,
+            frame_number=np.array([packet.number for packet in packets]),
+            skipped=skipped,
+        )
     damaged = (f"{skipped} damaged packets were left out",) if skipped else ()
     cloud = logged_cloud(
         np.repeat(counted.frame, [len(packet.points) for packet in packets]),
@@ -116,7 +140,29 @@ def read_ti_uart(path: Path | str) -> UartLog:
         notes=(*counted.notes, *damaged),
         missing=counted.missing,
     )
-    return UartLog(points=cloud, frame_number=number, skipped=skipped)
+    number = np.array([packet.number for packet in packets])
+    return UartLog(points=cloud, tracks=tracks, frame_number=number, skipped=skipped)
+
+
+def _tracks(packets: list[Packet], frame: np.ndarray) -> Tracks:
+    targets = np.concatenate([packet.targets for packet in packets])
+    place, velocity = targets["motion"][:, :3].astype(float), targets["motion"][:, 3:6].astype(float)
+    frame = np.repeat(frame, [len(packet.targets) for packet in packets])
+    return Tracks(frame=frame, number=targets["number"].astype(int), place_m=place, velocity_mps=velocity)
+
+
+def _tracked_points(tracks: Tracks, counted: CountedFrames, skipped: int) -> LoggedCloud:
+    """Targets as points, with their radial velocities."""
+    away = tracks.place_m / np.maximum(np.linalg.norm(tracks.place_m, axis=1, keepdims=True), 1e-6)
+    damaged = (f"{skipped} damaged packets were left out",) if skipped else ()
+    return logged_cloud(
+        tracks.frame,
+        tracks.place_m,
+        (tracks.velocity_mps * away).sum(axis=1),
+        num_frames=counted.num_frames,
+        notes=(*counted.notes, *damaged, "the log has no point cloud: the targets of its tracker are its points"),
+        missing=counted.missing,
+    )
 
 
 def point_packets(source: ByteSource, head: bytes = b"") -> Iterator[np.ndarray]:
@@ -166,16 +212,24 @@ def _packet(data: bytes, at: int) -> Packet | None:
         found = _tlvs(data, at + header, end, tlvs)
         points = None if found is None else _points(found, objects)
         if points is not None:
-            return Packet(number, points, end, frozenset(found or ()))
+            return Packet(
+                number, points, end, frozenset(found or ()), _targets(found or {}, TARGETS, TARGETS_LOW_POWER)
+            )
     if at + COUNTING_HEADER.size <= end:
         tlvs = COUNTING_HEADER.unpack_from(data, at)[-2]
         found = _tlvs(data, at + COUNTING_HEADER.size, end, tlvs, own_bytes=TLV.size)
         points = None if found is None else _points({SPHERICAL: found[COUNTED]} if COUNTED in found else {}, 0)
         if points is not None:
-            return Packet(
-                number, points, end, frozenset(SPHERICAL if kind == COUNTED else kind for kind in found or ())
-            )
+            kinds = frozenset(SPHERICAL if kind == COUNTED else kind for kind in found or ())
+            return Packet(number, points, end, kinds, _targets(found or {}, COUNTED_TARGETS))
     return None
+
+
+def _targets(found: dict[int, bytes], *kinds: int) -> Any:
+    """Targets of the first of these TLVs; none if there is none or its length is another."""
+    raw = next((found[kind] for kind in kinds if kind in found), b"")
+    targets: Any = np.frombuffer(raw, TARGET) if len(raw) % TARGET.itemsize == 0 else np.zeros(0, TARGET)
+    return targets[np.isfinite(targets["motion"]).all(axis=1)]
 
 
 def _counting_2d(data: bytes, at: int) -> Packet | None:
@@ -221,6 +275,8 @@ def _points(found: dict[int, bytes], objects: int) -> np.ndarray | None:
         return _spherical(found[SPHERICAL])
     if COMPRESSED in found:
         return _compressed(found[COMPRESSED])
+    if FLOAT_SPHERICAL in found:
+        return _float_spherical(found[FLOAT_SPHERICAL], found.get(SIDE_INFO, b""))
     raw = found.get(POINTS, b"")
     if not raw:
         return np.zeros((0, 6))
@@ -287,3 +343,15 @@ def _spherical(raw: bytes) -> np.ndarray | None:
             snr,
         ]
     )
+
+
+def _float_spherical(raw: bytes, side: bytes) -> np.ndarray | None:
+    """Per point range in m, azimuth and elevation in rad and Doppler in m/s as float32; SNR from TLV 7."""
+    if len(raw) % 16:
+        return None
+    range_m, azimuth, elevation, velocity = np.frombuffer(raw, "<f4").reshape(-1, 4).astype(float).T
+    flat_m, nothing = range_m * np.cos(elevation), np.full(len(range_m), np.nan)
+    has_side = len(side) == 4 * len(range_m)
+    snr_db = np.frombuffer(side, "<i2").reshape(-1, 2)[:, 0] / 10 if has_side else nothing
+    place = [flat_m * np.sin(azimuth), flat_m * np.cos(azimuth), range_m * np.sin(elevation)]
+    return np.column_stack([*place, velocity, snr_db, nothing])
