@@ -125,8 +125,8 @@ def take_pictures_of_files(page: Any, folder: Path) -> None:
     page.evaluate("studio.player.seek(12)")
     take(page, "studio_mesh")
     Image.fromarray(np.full((480, 640, 3), 180, np.uint8)).save(folder / "rgb.png")
-    Image.fromarray(np.full((480, 640), 450, np.uint16)).save(folder / "depth.png")
-    drop(page, [folder / "rgb.png", folder / "depth.png"])
+    np.save(folder / "depth.npy", np.full((480, 640), 0.45, np.float32))
+    drop(page, [folder / "rgb.png", folder / "depth.npy"])
     take(page, "studio_no_floor")
 
 

@@ -287,8 +287,8 @@ def test_twenty_seconds_live(page: Any, address: Running):
 def test_a_room_without_a_floor_offers_recovery_options(page: Any, tmp_path: Path):
     """A wall at 0.45 m fills the picture: nobody can stand before it."""
     Image.fromarray(np.full((480, 640, 3), 180, np.uint8)).save(tmp_path / "rgb.png")
-    Image.fromarray(np.full((480, 640), 450, np.uint16)).save(tmp_path / "depth.png")
-    drop(page, [tmp_path / "rgb.png", tmp_path / "depth.png"])
+    np.save(tmp_path / "depth.npy", np.full((480, 640), 0.45, np.float32))
+    drop(page, [tmp_path / "rgb.png", tmp_path / "depth.npy"])
     page.wait_for_selector(".problem button", timeout=60_000)
     assert page.get_attribute(".problem", "data-code") in ("no_room", "room")
     assert page.evaluate("studio.player.scene.people") == 0  # nobody of the room before stands in this one

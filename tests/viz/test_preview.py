@@ -56,7 +56,7 @@ def test_a_zero_cube_of_another_radar_is_drawn(tmp_path: Path):
 
 FAR = replace(AWR1843, first_range_bin=0, num_range_bins=256, num_loops=8)
 SMALL = {name: replace(PRESETS[name], num_loops=8, num_range_bins=16) for name in ("iwr6843aop", "xwr1642boost")}
-WALK = ("Range over time", "Micro-Doppler", "Range-Doppler", "Range profile", "Points from the side")
+WALK = ("Range over time", "Micro-Doppler", "Range-Doppler", "Range profile", "Moving points, side")
 
 
 @pytest.mark.parametrize(
@@ -67,7 +67,7 @@ WALK = ("Range over time", "Micro-Doppler", "Range-Doppler", "Range profile", "P
         ("breathing", ("Range over time, change over frames", "Displacement", "Doppler over all frames")),
         ("one frame", ("Range profile", "Doppler profile", "Azimuth profile")),
         ("narrow in elevation", ("Range-elevation",)),
-        ("a row of antennas", ("Points over time (no elevation)",)),
+        ("a row of antennas", ("Moving points over time",)),
         ("no row", ("Range over time",)),
     ],
 )

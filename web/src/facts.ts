@@ -22,7 +22,7 @@ export function motionLine(meta: any, mark: ((kind: string) => void) | null = nu
 export function warnings(sequence: Sequence): HTMLElement[] {
   const meta = sequence.header.meta, lost = meta.packets?.lost_bytes ? [`${meta.packets.lost} packets were lost; their samples are zero`] : [];
   const damaged = meta.damaged_frames ?? meta.missing_frames ?? meta.lost_frames, count = Array.isArray(damaged) ? damaged.length : Number(damaged ?? 0);
-  const said = [...(meta.warnings ?? []), ...lost, ...(count ? [`${count} frames are damaged or missing`] : []), ...(meta.kind === "log" ? meta.assumed ?? [] : [])];
+  const said = [...(meta.warnings ?? []), ...lost, ...(count ? [`${count} frames are damaged or missing`] : []), ...(sequence.db.unit.includes("points") ? meta.assumed ?? [] : [])];
   if (sequence.header.frames_in_all > sequence.frames) said.push(`${sequence.frames} of ${sequence.header.frames_in_all} frames are shown`);
   return [...new Set<string>(said)].map((one) => element("li", { class: "warning" }, element("span", { class: "sign", "aria-hidden": "true" }, "⚠"), inPageWords(one)));
 }
