@@ -61,9 +61,7 @@ def test_ways_are_free_together_as_they_are_alone():
 def test_what_the_room_lacks_is_refused_with_what_it_has():
     scene = dataclasses.replace(room(seats=(seat(),)), landmarks=(DOOR, dataclasses.replace(DOOR, kind="table")))
     floor = FloorMap(scene, WINDOW_M, 1.75)
-    with pytest.raises(
-        InputError, match=r"no window .*a door, a seat, a table.*--landmark window=X,Y"
-    ):
+    with pytest.raises(InputError, match=r"no window .*a door, a seat, a table.*--landmark window=X,Y"):
         with_stand_ins(_plan("window"), floor, REFUSE, seed=0)
     own, (note,) = with_stand_ins(_plan("window"), floor, STAND_IN, seed=0)
     assert "no window is in the picture" in note
