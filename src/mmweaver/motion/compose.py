@@ -23,6 +23,7 @@ from mmweaver.motion.planning.placement import Conditions, Placement, place
 from mmweaver.motion.verification.verify import VerifiedStep, verified_clauses, verified_steps
 
 RUN_ROOM_M = 3.5  # straight free floor required to run to and fro at 3 m/s
+RUN_ROOM_S = 1.2  # the same for a stated speed, in seconds of it
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -176,8 +177,10 @@ def _running(plan: MotionPlan, floor: FloorMap) -> tuple[MotionPlan, tuple[str, 
     """Replaces undirected running by running on the spot if the room is too short for running to and fro."""
     if not any(_runs_anywhere(step) for step in plan.steps):
         return plan, ()
-    longest_m = floor.longest_free_m(RUN_ROOM_M)
-    if longest_m >= RUN_ROOM_M:
+    stated_mps = max(step.speed_mps for step in plan.steps if _runs_anywhere(step))
+    room_m = min(RUN_ROOM_M, RUN_ROOM_S * stated_mps) if stated_mps else RUN_ROOM_M
+    longest_m = floor.longest_free_m(room_m)
+    if longest_m >= room_m:
         return plan, ()
     steps, notes = [], []
     for step in plan.steps:
@@ -185,7 +188,7 @@ def _running(plan: MotionPlan, floor: FloorMap) -> tuple[MotionPlan, tuple[str, 
         steps.append(replace(step, direction=Shape.SPOT) if aimless else step)
         if aimless:
             notes.append(
-                f"for {step.clause!r} there are {longest_m:.1f} m of straight free floor, {RUN_ROOM_M:g} m are needed:"
+                f"for {step.clause!r} there are {longest_m:.1f} m of straight free floor, {room_m:g} m are needed:"
                 " the person runs on the spot"
             )
     return replace(plan, steps=tuple(steps)), tuple(notes)

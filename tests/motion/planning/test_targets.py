@@ -11,6 +11,7 @@ from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.plan import MotionPlan, Step
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.missing import REFUSE, STAND_IN, with_stand_ins
 from mmweaver.motion.planning.placement import Conditions, place
 from mmweaver.motion.planning.targets import drop_targets
 from tests.motion.rooms import WINDOW_M, room, seat
@@ -46,12 +47,13 @@ def test_it_goes_round_what_stands_between():
 
 def test_what_the_room_lacks_is_refused_with_what_it_has():
     scene = dataclasses.replace(room(seats=(seat(),)), landmarks=(DOOR, dataclasses.replace(DOOR, kind="table")))
-    with pytest.raises(InputError, match=r"no window .*a door, a seat, a table"):
-        _placed(scene, "window")
-    with pytest.raises(InputError, match="say a direction instead"):
-        _placed(room(), "door")
-    with pytest.raises(InputError, match="--landmark window=X,Y"):
-        _placed(scene, "window")
+    floor = FloorMap(scene, WINDOW_M, 1.75)
+    with pytest.raises(InputError, match=r"no window .*a door, a seat, a table.*--landmark window=X,Y"):
+        with_stand_ins(_plan("window"), floor, REFUSE, seed=0)
+    own, (note,) = with_stand_ins(_plan("window"), floor, STAND_IN, seed=0)
+    assert "no window is in the picture" in note
+    assert [mark.kind for mark in own.landmarks] == ["door", "table", "window"]
+    assert bool(floor.can_stand(np.array(own.landmarks[-1].approach_m)))
     assert _placed(scene, "desk").path  # a desk is a table
 
 
@@ -66,7 +68,7 @@ def test_who_points_at_a_landmark_faces_it(text: str):
     x, y = DOOR.position_m[:2] - path.position_m(end_s)[0]
     assert np.angle(np.exp(1j * (path.facing_rad(end_s)[0] - np.arctan2(y, x)))) == pytest.approx(0, abs=0.2)
     with pytest.raises(InputError, match="no door"):
-        place(plan, FloorMap(room(), WINDOW_M, 1.75), SkeletonProportions(1.75), Conditions(seed=1))
+        with_stand_ins(plan, FloorMap(room(), WINDOW_M, 1.75), REFUSE, seed=1)
     assert any("no door to face" in note for note in drop_targets(plan).notes)
 
 

@@ -159,13 +159,16 @@ class Measurement:
         found[(up < LOW_PELVIS) | ((up < SEAT_PELVIS) & ~upright & (knees >= 0.14))] = 3
         return found
 
-    def _smooth(self, values: np.ndarray, seconds: float) -> np.ndarray:
+    def _smooth(self, values: np.ndarray, seconds: float, *, goes_on: bool = True) -> np.ndarray:
+        """Smoothed values; a body under way `goes_on` beyond the ends, else what is beyond counts as rest."""
         from scipy.ndimage import gaussian_filter1d
 
         width = seconds * self._rate_hz
         edge = min(int(4 * width) + 1, len(values) - 1)
         padding = [(edge, edge)] + [(0, 0)] * (values.ndim - 1)
-        longer = np.pad(values, padding, mode="reflect", reflect_type="odd")  # a body under way goes on at the ends
+        longer = (
+            np.pad(values, padding, mode="reflect", reflect_type="odd") if goes_on else np.pad(values, padding, "edge")
+        )
         return np.asarray(gaussian_filter1d(longer, width, axis=0))[edge : edge + len(values)]
 
     def span(self, start_s: float, end_s: float) -> slice:
@@ -183,7 +186,8 @@ class Measurement:
         part = self.span(start_s, end_s)
         place, heading = self._of("pelvis")[part, :2], self._heading_rad[part]
         smooth = self._place_m[part]
-        speed = np.hypot(*np.gradient(self._smooth(place, CRUISE_S), axis=0).T) * self._rate_hz
+        # Short walks have no cruise: their speed is that of a walk that begins and ends at rest.
+        speed = np.hypot(*np.gradient(self._smooth(place, CRUISE_S, goes_on=False), axis=0).T) * self._rate_hz
         under_way = speed > max(MOVING_SHARE * float(speed.max()), 0.1)
         moving_rad = float(np.median(heading[under_way])) if under_way.any() else float(heading[0])
         net = place[-1] - place[0]
