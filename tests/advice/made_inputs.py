@@ -26,7 +26,8 @@ from mmweaver.motion.motion_models import MotionTask
 from mmweaver.scene.photo.estimated_depth import PROMPTED
 from mmweaver.scene.photo_files import sample_photo
 from mmweaver.training.captures import read_capture
-from mmweaver.weaver.front_door import Weaver, compose_request
+from mmweaver.weaver.composition import compose_request
+from mmweaver.weaver.front_door import Weaver
 from mmweaver.weaver.generation import Generation, Room
 from mmweaver.weaver.parsed_request import ParsedRequest
 from tests.captures import CFG

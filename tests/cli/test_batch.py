@@ -77,7 +77,8 @@ def test_without_a_length_all_are_as_long_as_the_longest(tmp_path: Path):
 def test_a_sentence_without_a_place_is_skipped_and_listed(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     file = tmp_path / "sentences.txt"
     file.write_text("a person stands\na person walks to the door\n")  # there is none in the sample
-    words = ["generate", "--demo", "--no-pictures", "--texts", str(file), "--out", str(tmp_path / "set")]
+    words = ["generate", "--demo", "--no-pictures", "--missing", "refuse", "--texts", str(file)]
+    words += ["--out", str(tmp_path / "set")]
     assert main(words) == 0
     shown = capsys.readouterr().out
     assert shown.startswith("1 sequence in ")

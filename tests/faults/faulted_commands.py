@@ -20,7 +20,7 @@ DEMO = "generate --demo --quiet --frames 2 --no-pictures --method physics"
 DATASET = "--rooms office --layouts 2 --sequences 1 --frames 2 --quiet"
 LABELLED = "--per-class 1 --seconds 0.6 --subjects 1 --method physics --quiet"
 TRAIN = "train weaver --encoder small --steps 2 --batch 1 --save-every 0 --validate-every 1 --device cpu --quiet"
-GENERATED = ("mmweaver.weaver.room_reader:reconstruct", "mmweaver.weaver.front_door:compose_request")
+GENERATED = ("mmweaver.weaver.room_reader:reconstruct", "mmweaver.weaver.composition:compose_request")
 ROOMS = tuple(f"mmweaver.scene.procedural.procedural_room:{name}" for name in ("make_room", "ProceduralRoom.photo"))
 TRAINED = (
     "mmweaver.training.network_examples:reconstruct", "mmweaver.training.network_examples:power_maps",

@@ -122,7 +122,7 @@ def test_waiting_goes_on_with_an_activity_that_has_no_end_and_holds_the_posture_
 
 
 def test_a_sentence_without_room_leaves_the_motion_as_it_was():
-    motion = continuous()
+    motion = continuous(missing="refuse")
     first = motion.act(parse("a person waves"))
     with pytest.raises(InputError):
         motion.act(parse("goes to the door"))

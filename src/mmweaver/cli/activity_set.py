@@ -34,7 +34,8 @@ def run_activity_set(asked: "Options") -> int:
     activities = read_activities(asked.activities)
     given = {name: getattr(asked, name) for name in ("seconds", "subjects", "iq", "board")}
     given |= {"each": asked.per_class, "split_by": asked.split}
-    options = SetOptions(seed=asked.seed, **{name: value for name, value in given.items() if value is not None})
+    given = {name: value for name, value in given.items() if value is not None}
+    options = SetOptions(seed=asked.seed, strict=asked.strict, **given)
     weaver = Weaver(method=asked.method or "auto", radar=asked.radar_config())
     if not asked.room:
         raise InputError("which room? give --room DIR with rgb.png and depth.png")

@@ -97,7 +97,7 @@ class Batch:
                 try:
                     if one.folder not in finished:
                         self._generate(one)
-                    made.append(one.entry())
+                    made.append({**one.entry(), **_outcome(one.folder)})
                 except _NoPlaceError as error:
                     refused.append({**one.entry(), "why": str(error)})
         except KeyboardInterrupt:
@@ -177,6 +177,28 @@ class Batch:
         return plain(same | request.meta())
 
 
+def _outcome(folder: Path) -> dict[str, Any]:
+    """What the list of all sequences holds of the clauses that are not done as the sentence says."""
+    clauses = read_json(folder / "meta.json").get("clauses", [])
+    others = [f"{one['clause']!r} is {one['status']}: {one['how']}" for one in clauses if one["status"] != "done"]
+    return {"not_as_said": others} if others else {}
+
+
+def approximated_lines(made: list[dict[str, Any]]) -> list[str]:
+    """One line per sentence of which some sequences do not show all as it says.
+
+    Args:
+        made: Entries of the sequences in the list.
+    """
+    lines = []
+    for text in dict.fromkeys(one["text"] for one in made):
+        own = [one for one in made if one["text"] == text]
+        others = [one["not_as_said"] for one in own if "not_as_said" in one]
+        if others:
+            lines.append(f"approximated {text!r} in {len(others)} of {len(own)}: {'; '.join(others[0])}")
+    return lines
+
+
 class _NoPlaceError(Exception):
     """The room has no place for a sentence."""
 
@@ -205,6 +227,7 @@ def run_batch(asked: "Options", out: Path) -> int:
     count = len(summary["sequences"])
     lines = [f"{count} sequence{'s' if count > 1 else ''} in {out}, listed in {LIST}"]
     lines += [summary["leaks"]] if "leaks" in summary else []
+    lines += approximated_lines(summary["sequences"])
     return asked.report(
         summary, *lines, *(f"skipped {one['folder']}, {one['text']!r}: {one['why']}" for one in refused)
     )

@@ -51,6 +51,9 @@ class LabelledSet:
     split: Literal["subject", "place", "room", "sentence"] | None = option(
         "what is held out for tests (default subject)"
     )
+    strict: bool = option(
+        "take no place where something is not done as the sentence says, measured on the joints", default=False
+    )
     method: str | None = option("weaver, the network (default), or physics", "NAME")
     iq: Iq | None = option(
         "how signals are stored (default float16, an error below 0.05 %); none: joints, points and what signals are"

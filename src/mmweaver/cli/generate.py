@@ -8,7 +8,8 @@ from mmweaver.cli.arguments import REQUEST_FILE, request_toml
 from mmweaver.cli.generate_inputs import DEFAULT_RADAR, radar_of, read_background, room_of, weaver_of
 from mmweaver.cli.option_groups import Layout, PointChoice, RadarChoice, Ranges, Written
 from mmweaver.core.errors import InputError
-from mmweaver.core.options import Place, Setting, Source, option, options, read_settings
+from mmweaver.core.options import Setting, Source, option, options, read_settings
+from mmweaver.core.placed_thing import PlacedThing
 from mmweaver.weaver.request import Request
 
 if TYPE_CHECKING:
@@ -84,10 +85,17 @@ class RoomInput:
         "PNG|builtin|MODEL",
         rare=True,
     )
-    landmark: list[tuple[str, Place]] | None = option(
-        "where a door, window, table, counter or bed is, if the photo does not show it well: metres right of and ahead"
-        " of the radar, for example door=0.9,2.8",
-        "KIND=X,Y",
+    landmark: list[PlacedThing] | None = option(
+        "where a thing that the text names is, if the photo does not show it well (door, table, sink, bin ...): metres"
+        " right of and ahead of the radar, for example door=0.9,2.8, and perhaps the direction that its front faces, in"
+        " degrees as for --heading",
+        "KIND=X,Y[,FACING]",
+        rare=True,
+    )
+    furnish: list[PlacedThing] | None = option(
+        "put furniture that the photo does not show into the room (bed, desk, table, chair, couch, wardrobe, sink, door"
+        " ...), as for --landmark; it echoes and occludes, and people use it",
+        "KIND=X,Y[,FACING]",
         rare=True,
     )
     photo: int | None = option("which photo of a scan or capture (default 0)", "N", rare=True)
@@ -279,6 +287,13 @@ class Options(RoomInput, Request, MotionInput, RadarChoice, Ranges, PointChoice,
         return {"adc_data_bin": self.keep_adc, "iq_order": self.iq_order, "pictures": not self.no_pictures}
 
     @property
+    def may_widen(self) -> bool:
+        """Whether the range window is a preset's, so that a sentence that lacks floor gets a wider one."""
+        from mmweaver.core.boards import PRESETS
+
+        return self.range_m is None and self.range_bins is None and self.radar_name(DEFAULT_RADAR) in PRESETS
+
+    @property
     def folder(self) -> Path:
         """The folder for results. Raises InputError where there is none."""
         if self.out is None and not self.demo:
@@ -330,6 +345,7 @@ def _run_one(asked: Options, out: Path) -> int:
         if asked.motion_file is None and asked.motion_model is None:  # before importing PyTorch, which takes 2 s
             parse(request, radar)
         weaver = weaver_of(asked, radar, bar)
+        weaver.widens = background is None and asked.may_widen
         parsed = weaver.parsed(_add_motion(asked, request, weaver))
         result = weaver.carry_out(parsed, room_of(asked, weaver, background))
         written = {REQUEST_FILE: asked.request_toml(text=texts, frames=parsed.frames, seconds=None)}

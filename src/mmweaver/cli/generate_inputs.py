@@ -95,5 +95,6 @@ def room_of(asked: "Options", weaver: "Weaver", background: "RadarCube | None") 
         background: The background recording, if any.
     """
     room = asked.read_room(weaver)
+    room = room.with_furniture(*asked.furnish, seed=asked.seed) if asked.furnish else room
     room = room.with_landmarks(*asked.landmark) if asked.landmark else room
     return room if background is None else room.with_background(background, came_from=asked.background)

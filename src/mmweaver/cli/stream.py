@@ -61,6 +61,9 @@ def run_stream(asked: "Options", out: Path) -> int:
         board=asked.board_name(),
         chunk_frames=PART_FRAMES if limit is None else min(PART_FRAMES, limit),
         heading_rad=asked.heading_rad,
+        missing=asked.missing,
+        parser=asked.parser,
+        strict=asked.strict,
         **person,
     )
     with claimed_folder(out):

@@ -29,6 +29,7 @@ def summary_lines(out: str | Path, meta: dict[str, Any], *, verbose: bool = Fals
     lines += ["people:  nobody, the room is empty"] if meta.get("people") == [] else []
     for person in people:
         lines += [_person_line(person), *([f"motion:  {person['shown']}"] if person.get("shown") else [])]
+    lines += [f"done:    {line}" for line in outcomes(meta)]
     shown = [one for one in meta["assumed"] if verbose or not isinstance(one, UsualAssumption)]
     lines += [f"assumed: {sentence}" for sentence in shown]
     if hidden := len(meta["assumed"]) - len(shown):
@@ -53,3 +54,30 @@ def _person_line(person: dict[str, Any]) -> str:
         f"person:  {person['height_m']:.2f} m tall, from {start} to {end} m (right, ahead),"
         f" the pelvis moves {person['path_length_m']:.2f} m over the floor"
     )
+
+
+def outcomes(meta: dict[str, Any]) -> list[str]:
+    """One line per person on what was measured of every clause; none of recorded motions.
+
+    Args:
+        meta: Contents of meta.json.
+    """
+    lines = []
+    for one in [meta] if "clauses" in meta else meta.get("people") or []:
+        clauses = [clause if isinstance(clause, dict) else vars(clause) for clause in one["clauses"]]
+        others = [clause for clause in clauses if clause["status"] != "done"]
+        facts = [fact for clause in clauses for fact in clause.get("facts") or ()]
+        done = f"{len(clauses) - len(others)} of {len(clauses)} clauses as measured on the joints"
+        lines += [f"{done}{_measured(facts)}"] * bool(clauses)
+        lines += [f"{clause['clause']!r} is {clause['status']}: {clause['how']}" for clause in others]
+    return lines
+
+
+def _measured(facts: list[dict[str, Any]]) -> str:
+    """The facts of all steps in short: ' (1.9 m at 1.1 m/s; 3 times)'."""
+    words = []
+    for fact in facts:
+        own = [f"{fact['path_m']:g} m at {fact['speed_mps']:g} m/s"] if "path_m" in fact else []
+        own += [f"turned {fact['turn_deg']:g} degrees"] if "turn_deg" in fact and "path_m" not in fact else []
+        words.append(", ".join([*own, f"{fact['duration_s']:g} s"]))
+    return f" ({'; '.join(words)})" if words else ""

@@ -42,9 +42,9 @@ from mmweaver.datasets.paired_sampling import (
     Draw,
     GivenPlacing,
     PlannedSequence,
+    Trials,
     differing_descriptions,
     done_by_anybody,
-    obstacle_of,
     paired_draws,
     places_of,
     shuffled,
@@ -55,7 +55,8 @@ from mmweaver.datasets.zarr_arrays import packed_iq
 from mmweaver.io.npz_files import read_npz, write_npz
 from mmweaver.motion.register_activity import activities_of
 from mmweaver.signal.features import point_table
-from mmweaver.weaver.front_door import Weaver, compose_request
+from mmweaver.weaver.composition import compose_request
+from mmweaver.weaver.front_door import Weaver
 from mmweaver.weaver.generation import Room
 from mmweaver.weaver.parsed_request import ParsedRequest
 
@@ -101,6 +102,7 @@ class SetOptions:
     seed: int = 0
     iq: str = "float16"  # one of IQ_KINDS
     board: str = "typical"  # of all sequences; sampled with the seed
+    strict: bool = False  # whether places are refused where something is not done as a sentence says
 
     def __post_init__(self) -> None:
         for name, most in (("each", 100_000), ("subjects", 10_000), ("places", 1000)):
@@ -168,7 +170,8 @@ class SetBuilder:
         places = [places_of(room.scene, window_m, options.places, options.seed) for room in self.rooms]
         sequences: list[PlannedSequence] = []
         labels = len(self.labels)
-        for draws in paired_draws(places, options.each, options.subjects, options.seed, labels, self._obstacle):
+        trials = self._trials.lost
+        for draws in paired_draws(places, options.each, options.subjects, options.seed, labels, self._obstacle, trials):
             sequences += [self._sequence(self._placed(draw), label) for label, draw in enumerate(draws)]
         return shuffled(sequences, options.seed)
 
@@ -180,7 +183,11 @@ class SetBuilder:
     def _obstacle(self, draw: Draw, label: int) -> str:
         """Why a draw does not serve a label; "" if it does."""
         one = self._sequence(self._placed(draw), label)
-        return obstacle_of(self.request_of(one), self.rooms[draw.room].scene, one.text)
+        return self._trials.obstacle(draw, label, self.request_of(one), self.rooms[draw.room].scene, one.text)
+
+    @cached_property
+    def _trials(self) -> Trials:
+        return Trials()
 
     def _placed(self, draw: Draw) -> Draw:
         return draw if self.given is None else self.given.applied(draw)
@@ -205,6 +212,7 @@ class SetBuilder:
             subject=draw.subject,
             height_m=height_m,
             board=self._board,
+            strict=self.options.strict,
         )
         return done_by_anybody(request) if self.ignored_descriptions else request
 
@@ -277,7 +285,7 @@ class SetBuilder:
         return {
             "schema_version": SCHEMA_VERSION,
             "command": self.command,
-            "options": asdict(self.options),
+            "options": {name: value for name, value in asdict(self.options).items() if name != "strict" or value},
             "activities": {label: list(texts) for label, texts in self.activities.items()},
             "rooms": [room.inputs for room in self.rooms],
             **({} if self.given is None else {"given": asdict(self.given)}),

@@ -25,10 +25,11 @@ from mmweaver.datasets.confounders import circumstances, leak_report
 from mmweaver.io.npz_files import read_poses_npz
 from mmweaver.motion.language.described_person import DescribedPerson
 from mmweaver.motion.planning.floor_map import FloorMap
-from mmweaver.weaver.front_door import compose_request
+from mmweaver.weaver.composition import compose_request, lost_of
 from mmweaver.weaver.parsed_request import ParsedRequest
 
 MAX_ATTEMPTS = 60  # places and headings tried for a draw of all labels
+MAX_SERVING = 8  # draws that serve all labels, of which the one that loses least of the sentences is taken
 MAX_OWN_ATTEMPTS = 300  # further ones for a label that the best draw does not serve
 SAME_PLACE_ATTEMPTS = 20  # the first of these keep the place of the other labels
 AROUND_PLACE_M = 0.25  # maximum distance of starts from the centre of a place, per axis
@@ -121,6 +122,7 @@ def paired_draws(
     seed: int,
     labels: int,
     obstacle: Callable[[Draw, int], str],
+    lost: Callable[[Draw, int], float] = lambda draw, label: 0.0,
 ) -> Iterator[list[Draw]]:
     """Samples draws over rooms and people in turn; one draw serves all labels if any does.
 
@@ -131,6 +133,7 @@ def paired_draws(
         seed: Seed of the draws.
         labels: Number of labels.
         obstacle: Why a draw does not serve a label; "" if it does.
+        lost: What a draw that serves a label loses of its sentence; of some draws, the one that loses least is taken.
 
     Yields:
         The draw of each label.
@@ -144,7 +147,7 @@ def paired_draws(
         room = index % len(places)
         rng = stream(seed, "activity set", "draw", index)
         subject = int(people[(index // len(places)) % len(people)])
-        best, unserved = None, dict.fromkeys(range(labels), "")
+        best, unserved, least, served = None, dict.fromkeys(range(labels), ""), math.inf, 0
         for _ in range(MAX_ATTEMPTS):
             placing = _placing(places[room], int(rng.integers(len(places[room]))), rng)
             draw = Draw(index=index, room=room, subject=subject, **placing, seed=int(rng.integers(2**31)))
@@ -153,11 +156,16 @@ def paired_draws(
                 if why := obstacle(draw, label):
                     failures[label] += 1
                     failed[label] = why
-                if best is not None and len(failed) >= len(unserved):
+                if best is not None and len(failed) >= max(len(unserved), 1):
                     break
             else:
                 best, unserved = draw, failed
-            if not unserved:
+            if failed:
+                continue
+            served, all_lost = served + 1, sum(lost(draw, label) for label in range(labels))
+            if all_lost < least:
+                best, unserved, least = draw, {}, all_lost
+            if least == 0 or served == MAX_SERVING:
                 break
         assert best is not None
         yield [_own(best, label, places[room], rng, obstacle) if label in unserved else best for label in range(labels)]
@@ -186,22 +194,34 @@ def _own(
     )
 
 
-def obstacle_of(request: ParsedRequest, scene: Scene, sentence: str) -> str:
-    """Why a sentence cannot be performed with its draw in a scene.
+class Trials:
+    """Sentences tried with draws: why one cannot be performed, and what a performed one loses of its sentence."""
 
-    Args:
-        request: Request with the placement of the draw.
-        scene: The room.
-        sentence: The sentence.
+    def __init__(self) -> None:
+        self._lost: dict[tuple[Draw, int], float] = {}
 
-    Returns:
-        The reason without the error's advice, which concerns a single start; "" if there is no obstacle.
-    """
-    try:
-        compose_request(request, scene)
-    except InputError as error:
-        return f"{sentence!r}: {str(error).partition('; ')[0]}"
-    return ""
+    def obstacle(self, draw: Draw, label: int, request: ParsedRequest, scene: Scene, sentence: str) -> str:
+        """Why a sentence cannot be performed with its draw in a scene.
+
+        Args:
+            draw: The draw.
+            label: Number of the label.
+            request: Request with the placement of the draw.
+            scene: The room.
+            sentence: The sentence.
+
+        Returns:
+            The reason without the error's advice, which concerns a single start; "" if there is no obstacle.
+        """
+        try:
+            self._lost[draw, label] = lost_of(compose_request(request, scene))
+        except InputError as error:
+            return f"{sentence!r}: {str(error).partition('; ')[0]}"
+        return ""
+
+    def lost(self, draw: Draw, label: int) -> float:
+        """What a draw without obstacle loses of a label's sentence, as measured on the joints."""
+        return self._lost.get((draw, label), 0.0)
 
 
 def unpaired_reasons(draws: Sequence[Draw], label: Sequence[int], label_names: Sequence[str]) -> dict[str, str]:
@@ -324,11 +344,14 @@ def sentence_draws(
         return [], refused
     possible = [requests[text] for text in texts]
 
+    trials = Trials()
+
     def obstacle(draw: Draw, label: int) -> str:
-        return obstacle_of(placed(possible[label], given.applied(draw, seed), given.height_m), scene, texts[label])
+        request = placed(possible[label], given.applied(draw, seed), given.height_m)
+        return trials.obstacle(draw, label, request, scene, texts[label])
 
     places = [places_of(scene, possible[0].range_window_m, PLACES, seed)]
-    draws = paired_draws(places, number, SUBJECTS, seed, len(possible), obstacle)
+    draws = paired_draws(places, number, SUBJECTS, seed, len(possible), obstacle, trials.lost)
     return [
         {text: given.applied(draw, seed) for text, draw in zip(texts, each, strict=True)} for each in draws
     ], refused

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 from mmweaver.core.records import PoseSequence, Scene
@@ -16,8 +17,10 @@ from mmweaver.motion.planning.collision import CollisionMap, PulledChair
 from mmweaver.motion.planning.collision_ranking import RankedPlacement, least_collision
 from mmweaver.motion.planning.constraint_relaxation import relax_constraints
 from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.missing import STAND_IN, with_stand_ins
 from mmweaver.motion.planning.named_places import settled
 from mmweaver.motion.planning.placement import Conditions, Placement, place
+from mmweaver.motion.verification.verify import VerifiedStep, verified_clauses, verified_steps
 
 RUN_ROOM_M = 3.5  # straight free floor required to run to and fro at 3 m/s
 
@@ -34,6 +37,8 @@ class Motion:
         end: Final state of the body; None for a recorded motion.
         controls: Pose parameters at the times of `pose`; None for a recorded motion.
         chair: A chair assumed to be pulled out, if any.
+        asked: Steps as the sentence asks for them, before the room has changed them; () for a recorded motion.
+        scene: The room, with what stands in for things that it lacks; None for a recorded motion.
     """
 
     pose: PoseSequence
@@ -43,15 +48,24 @@ class Motion:
     end: BodyState | None = None
     controls: Controls | None = None
     chair: PulledChair | None = None
+    asked: tuple[Step, ...] = ()
+    scene: Scene | None = None
 
     @property
     def shown(self) -> str:
         """Description of all steps in order; "" for a recorded motion."""
         return "" if self.person is None else in_turn(self.plan.steps)
 
-    @property
+    @cached_property
+    def verified(self) -> list[VerifiedStep]:
+        """Every step as measured on the joints; none of a recorded motion."""
+        if self.scene is None:
+            return []
+        return verified_steps(self.asked, self.plan.steps, self.pose, self.scene)
+
+    @cached_property
     def clauses(self) -> tuple[ClauseRecord, ...]:
-        """Outcome of every clause: the plan's records, with the notes that the room has added."""
+        """Outcome of every clause: the plan's records, the notes that the room has added, and what the joints show."""
         records = add_shown_text(self.plan.clauses, self.plan.steps)
         room = [note for note in self.assumptions if note not in self.plan.notes]
         for step in self.plan.steps:
@@ -61,7 +75,7 @@ class Motion:
                         record.lowered_to(APPROXIMATED, note) if number in step.clauses else record
                         for number, record in enumerate(records)
                     )
-        return records
+        return verified_clauses(records, self.verified)
 
 
 def compose(
@@ -74,6 +88,7 @@ def compose(
     person: Person | None = None,
     may_touch: bool = True,
     farthest_m: float = math.inf,
+    missing: str = STAND_IN,
     **conditions: Any,
 ) -> Motion:
     """Finds a free trajectory on the scene's floor for a plan, and animates the body along it.
@@ -88,6 +103,8 @@ def compose(
         may_touch: where nothing else has room, travelling movements are done on the spot, falls go another way, and a
             lying body touches furniture; each deviation is reported. False raises instead.
         farthest_m: what the radar sees at most, with all its range bins; a longer window is not advised.
+        missing: what is done about a thing that the sentence names and the room lacks: a place of the room stands in
+            for it ("stand-in"), or an InputError ("refuse").
         **conditions: the fields of `planning.placement.Conditions`: `seed`, and perhaps `start_m`, `heading_rad`,
             `is_varied` (False: no habits, too), `others` and `after`.
 
@@ -106,6 +123,9 @@ def compose(
     plan = apply_habits(plan, person)
     body = SkeletonProportions(person.height_m)
     floor = FloorMap.of(scene, range_window_m, person.height_m)
+    scene, missing_notes = with_stand_ins(plan, floor, missing, given.seed)
+    floor = floor if scene is floor.scene else FloorMap.of(scene, range_window_m, person.height_m)
+    asked = plan.steps
     plan, running_notes = _running(plan, floor)
 
     controls: dict[int, Controls] = {}
@@ -134,7 +154,7 @@ def compose(
         plan, floor, compose_on, may_touch=may_touch, depth_m=_depth_m, farthest_m=farthest_m
     )
     placed, described = best.placement, (person.note,) if person.described else ()
-    notes = plan.notes + described + running_notes + room_notes + placed.assumptions + best.notes
+    notes = plan.notes + described + missing_notes + running_notes + room_notes + placed.assumptions + best.notes
     return Motion(
         pose=best.pose,
         plan=plan,
@@ -143,6 +163,8 @@ def compose(
         end=placed.end_state(plan, body),
         controls=controls[id(placed)],
         chair=placed.chair,
+        asked=asked,
+        scene=scene,
     )
 
 

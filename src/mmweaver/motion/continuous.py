@@ -24,8 +24,10 @@ from mmweaver.motion.language.timing import natural_s, schedule
 from mmweaver.motion.people import Person, apply_habits, person_of, subject_of
 from mmweaver.motion.planning.body_state import BodyState
 from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.missing import STAND_IN
 from mmweaver.motion.planning.placement import Conditions
 from mmweaver.motion.planning.seating import preferred, usable_seats
+from mmweaver.motion.verification.verify import check_done
 
 IDLE_S = 10.0  # duration of a part without a new sentence
 HISTORY_S = 2.5  # of the previous motion, kept for windows that reach back in time
@@ -72,6 +74,8 @@ class ContinuousMotion:
         heading_rad: Initial heading in radians, from +x towards +y; None chooses one.
         height_m: Height of the body in metres; None takes the described or the subject's height.
         subject: Number of the person; None samples it by the seed.
+        missing: What is done about things that a sentence names and the room lacks, as for `compose`.
+        strict: Whether a sentence of which something is not done is refused.
     """
 
     def __init__(
@@ -84,8 +88,11 @@ class ContinuousMotion:
         farthest_m: float = math.inf,
         height_m: float | None = None,
         subject: int | None = None,
+        missing: str = STAND_IN,
+        strict: bool = False,
     ) -> None:
         self.scene, self.frame_period_s, self.range_window_m = scene, frame_period_s, range_window_m
+        self._missing, self._strict = missing, strict
         self._first, self._farthest_m = first, farthest_m  # start and heading are those of the first part
         self._height_m, self._subject = height_m, subject_of(first.seed) if subject is None else subject
         self._person: Person | None = None
@@ -178,7 +185,10 @@ class ContinuousMotion:
             heading_rad=self._first.heading_rad if is_first else None,
             may_touch=may_touch,
             farthest_m=self._farthest_m,
+            missing=self._missing,
         )
+        if self._strict:
+            check_done(text, motion.clauses)
         begins = 0 if self._last is None else self._last.end_frame
         begin_s = begins * self.frame_period_s
         before = None if self._last is None else self._last.pose

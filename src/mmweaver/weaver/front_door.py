@@ -35,15 +35,13 @@ from mmweaver.motion.animation.root_path import resample
 from mmweaver.motion.compose import Motion
 from mmweaver.motion.continuous import ContinuousMotion
 from mmweaver.motion.mocap.clip import MotionClip
-from mmweaver.motion.mocap.clip_placement import place_clip
 from mmweaver.motion.mocap.read_motion import read_motion
-from mmweaver.motion.multi_person import compose_people
-from mmweaver.motion.people import subject_of
 from mmweaver.motion.planning.placement import Conditions
 from mmweaver.propagation.rays import Rays
 from mmweaver.propagation.static_paths import ALL_PATHS
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from, unseen_notes
 from mmweaver.signal.detection import check_points, detect, needs_adc
+from mmweaver.weaver.composition import compose_request, furnished_room, widened
 from mmweaver.weaver.generation import Generation, Room
 from mmweaver.weaver.parsed_request import ParsedRequest, parse
 from mmweaver.weaver.request import Request
@@ -104,6 +102,7 @@ class Weaver(RoomReader):
         is_named = not isinstance(radar, RadarConfig)
         self.calibration = read_ti_calibration(str(radar)) if calibration is None and is_named else calibration
         super().__init__(listener)
+        self.widens = False  # whether a sentence that lacks floor gets a wider range window
         self._background_board = BackgroundBoard()
         check_points(points, self.radar)
         self.points = points
@@ -254,7 +253,8 @@ class Weaver(RoomReader):
             InputError: For a request that cannot be met.
         """
         check_streams(self.method, self.method_name)
-        request = self.request("a person stands", frames=1, **asked)
+        parser = asked.pop("parser", None)  # of the sentences to come
+        request = replace(self.request("a person stands", frames=1, **asked), parser=parser)
         (person,) = request.people
         motion = ContinuousMotion(
             room.scene,
@@ -264,6 +264,8 @@ class Weaver(RoomReader):
             farthest_m=request.config.farthest_bin_m,
             height_m=person.height_m,
             subject=person.subject,
+            missing=request.missing,
+            strict=request.strict,
         )
         return Streamer(self, room, request, motion, chunk_frames).chunks(sentences)
 
@@ -282,11 +284,16 @@ class Weaver(RoomReader):
         poses = request.radar_poses or (AT_CAMERA,)
         if room.background is not None and len(poses) > 1:
             raise InputError("a background recording is of one radar; give one radar pose, that of the recording")
-        scenes = [scene_seen_from(room.scene, pose) for pose in poses]
         stages = Stages(self._listener)
         stages.seconds.update(room.seconds)
         with stages("compose the motion"):
-            people = compose_request(request, room.scene) if people is None else people
+            if people is None:
+                room = furnished_room(request, room)
+                may_widen = self.widens and room.background is None and request.motion is None
+                request, people = (
+                    widened(request, room.scene) if may_widen else (request, compose_request(request, room.scene))
+                )
+        scenes = [scene_seen_from(room.scene, pose) for pose in poses]
         results = [self._recorded(request, replace(room, scene=scene), people, stages) for scene in scenes]
         return replace(results[0], further=tuple(results[1:]))
 
@@ -417,51 +424,6 @@ class Weaver(RoomReader):
             "assumed": _assumed(room.scene, people, (*signal.assumptions, *request.config.notes)),
             **_people_meta(poses, people),
         }
-
-
-def compose_request(request: ParsedRequest, scene: Scene) -> tuple[Motion, ...]:
-    """Composes the motion of each person; a recorded motion replaces that of the first.
-
-    Args:
-        request: The parsed request.
-        scene: The room in the camera's coordinates.
-
-    Returns:
-        One motion per person, without collisions with the room and each other.
-
-    Raises:
-        InputError: If the room has no space for the motion.
-    """
-    recorded = None
-    if not request.people:
-        return ()
-    first = request.people[0]
-    if request.motion is not None:
-        clip = request.motion if first.height_m is None else request.motion.scaled_to(first.height_m)
-        recorded = place_clip(
-            clip,
-            scene,
-            duration_s=request.duration_s,
-            seed=request.seed,
-            range_window_m=request.range_window_m,
-            start_m=first.start_m,
-            heading_rad=request.heading_rad,
-            as_recorded=request.as_recorded,
-        )
-        who = subject_of(request.seed) if first.subject is None else first.subject
-        recorded = replace(recorded, pose=replace(recorded.pose, subject=who))
-    return compose_people(
-        [person.plan for person in request.people],
-        scene,
-        seed=request.seed,
-        range_window_m=request.range_window_m,
-        starts_m=[person.start_m for person in request.people],
-        heights_m=[person.height_m for person in request.people],
-        subjects=[person.subject for person in request.people],
-        first=recorded,
-        heading_rad=request.heading_rad,
-        farthest_m=request.config.farthest_bin_m,
-    )
 
 
 def _found(weights: str | Path, revision: str | None = None) -> Path:

@@ -11,6 +11,7 @@ from mmweaver.core.atomic_files import staged_folder
 from mmweaver.core.board import Board, read_board
 from mmweaver.core.boards import IDEAL_BOARD
 from mmweaver.core.errors import InputError
+from mmweaver.core.placed_thing import PlacedThing
 from mmweaver.core.record_values import ShownByFacts
 from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, RgbdPhoto, Scene
 from mmweaver.core.stages import Stages
@@ -48,17 +49,36 @@ class Room(ShownByFacts):
     def _repr_html_(self) -> str:
         return _add_picture(super()._repr_html_(), _png_of(self.scene.photo.rgb))
 
-    def with_landmarks(self, *given: tuple[str, tuple[float, float]]) -> "Room":
+    def with_landmarks(self, *given: PlacedThing | tuple[str, tuple[float, float]]) -> "Room":
         """The room with landmarks at known places, which replace detected ones of the same kind.
 
         Args:
-            *given: Kind and place (metres right of and ahead of the radar), such as `("door", (0.9, 2.8))`.
+            *given: Kind and place (metres right of and ahead of the radar), such as `("door", (0.9, 2.8))`, and perhaps
+                the direction that its front faces in degrees: 0 towards the radar, 90 to the picture's right.
 
         Raises:
             InputError: For a kind that is not a destination of sentences.
         """
-        inputs = self.inputs | {"landmarks": [[kind, *place] for kind, place in given]}
-        return replace(self, scene=add_landmarks(self.scene, given), inputs=inputs)
+        things = [PlacedThing.of(one) for one in given]
+        return replace(self, scene=add_landmarks(self.scene, things), inputs=self.inputs | {"landmarks": _rows(things)})
+
+    def with_furniture(self, *given: PlacedThing | tuple[str, tuple[float, float]], seed: int = 0) -> "Room":
+        """The room with furniture that the photo does not show: it echoes, occludes, takes floor, and can be used.
+
+        Args:
+            *given: Kind and place as for `with_landmarks`: bed, desk, table, chair, couch, wardrobe, sink, door, and
+                others of `scene.furnished.RECORD_OF`.
+            seed: Seed of sizes and colours.
+
+        Raises:
+            InputError: For unknown furniture, or a place that is not in front of the radar.
+        """
+        from mmweaver.scene.furnished import furnished
+
+        things = [PlacedThing.of(one) for one in given]
+        items = [(one.kind, one.place_m, one.facing_rad) for one in things]
+        there = [*self.inputs.get("furniture", ()), *_rows(things)]
+        return replace(self, scene=furnished(self.scene, items, seed), inputs=self.inputs | {"furniture": there})
 
     def with_background(self, source: str | Path | RadarCube, *, came_from: Path | None = None) -> "Room":
         """The room with a background recording of the empty room by your radar, whose static clutter is used as it is.
@@ -79,6 +99,11 @@ class Room(ShownByFacts):
             source = read_recording(came_from).cube
         inputs = self.inputs if came_from is None else self.inputs | {"background": _recording_digest(came_from)}
         return replace(self, background=source, background_board=_board_next_to(came_from), inputs=inputs)
+
+
+def _rows(things: list[PlacedThing]) -> list[list[Any]]:
+    """Things for meta.json: kind, x, y and, if given, the direction of the front in degrees."""
+    return [[one.kind, *one.place_m, *([] if one.facing_deg is None else [one.facing_deg])] for one in things]
 
 
 def _board_next_to(recording: Path | None) -> Board | None:

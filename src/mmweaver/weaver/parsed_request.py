@@ -4,6 +4,7 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any
 
 from mmweaver.core.board import Board
@@ -16,11 +17,12 @@ from mmweaver.io.result_folder import radar_meta
 from mmweaver.motion.empty_floor import NOBODY, says_nobody
 from mmweaver.motion.language.plan import APPROXIMATED, MotionPlan
 from mmweaver.motion.language.postures import add_shown_text
-from mmweaver.motion.language.sentence import parse_sentence
+from mmweaver.motion.language.sentence import SentenceParser, parse_sentence
 from mmweaver.motion.language.timing import natural_s, repeated, schedule
 from mmweaver.motion.mocap.clip import MotionClip, check_lasts
 from mmweaver.motion.multi_person import MOST_PEOPLE
 from mmweaver.motion.people import check_subject
+from mmweaver.motion.planning.missing import STAND_IN
 from mmweaver.motion.planning.targets import SHORTEST_PATH_M
 from mmweaver.motion.register_activity import load_activity_plugins
 from mmweaver.weaver.request import Request
@@ -59,6 +61,9 @@ class ParsedRequest:
     keep_adc: bool = False
     board: Board | None = None  # None: a typical one of this seed, or that of a background recording
     radar_poses: tuple[RadarPose, ...] = ()  # none: one radar at the camera
+    missing: str = STAND_IN  # what is done about things that the room lacks
+    strict: bool = False  # whether what is not done is refused
+    parser: str | None = None  # the language model that reads sentences; None: the grammar
 
     @property
     def duration_s(self) -> float:
@@ -140,7 +145,8 @@ def parse(asked: Request, radar: RadarConfig, *, needs_adc: bool = False) -> Par
     if count is not None:
         _check_size(config, count, has_adc)
     plans: list[MotionPlan | None] = [
-        None if is_empty or (motion is not None and index == 0) else parsed_text(one) for index, one in enumerate(texts)
+        None if is_empty or (motion is not None and index == 0) else parsed_text(one, asked.parser)
+        for index, one in enumerate(texts)
     ]
     if asked.path_m is not None:
         plans[0] = _along(plans[0], asked.path_m)
@@ -171,6 +177,9 @@ def parse(asked: Request, radar: RadarConfig, *, needs_adc: bool = False) -> Par
         keep_adc=asked.keep_adc,
         board=None if asked.board is None else find_board(asked.board, config, asked.seed),
         radar_poses=tuple(asked.radar_poses),
+        missing=asked.missing,
+        strict=asked.strict,
+        parser=asked.parser,
     )
 
 
@@ -214,22 +223,33 @@ def _frames_needed(plans: Sequence[MotionPlan | None], motion: MotionClip | None
     return max(1, math.ceil(needed_s / config.frame_period_s - 1e-6))
 
 
-def parsed_text(text: str) -> MotionPlan:
+def parsed_text(text: str, parser: str | None = None) -> MotionPlan:
     """Parses a sentence; activities of plug-ins are loaded if it is not understood without them.
 
     Args:
         text: The sentence.
+        parser: Name of a language model that reads it (`model_parser.named_parser`); None for the grammar.
 
     Raises:
         InputError: If less than half of it is understood, or it describes an empty room.
     """
     if says_nobody(text):
         raise InputError(f"{text[:60]!r} is an empty place, a sequence of its own: generate --text {NOBODY}, alone")
+    if parser is not None:
+        return _named(parser)(text, in_part=True)
     try:
         return parse_sentence(text)
     except InputError:
         load_activity_plugins()
         return parse_sentence(text, in_part=True)
+
+
+@cache
+def _named(parser: str) -> SentenceParser:
+    from mmweaver.motion.language.model_parser import named_parser
+
+    load_activity_plugins()
+    return named_parser(parser)
 
 
 def _along(plan: MotionPlan | None, path_m: Sequence[Place]) -> MotionPlan:

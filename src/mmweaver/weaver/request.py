@@ -7,7 +7,7 @@ studio's form. Imports are kept light.
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from mmweaver.core.options import Place, Source, option, options
 
@@ -93,6 +93,24 @@ class Request:
         "N",
         kind=int,
         many=True,
+    )
+    missing: Literal["stand-in", "furnish", "refuse"] = option(
+        "a thing that the text names and the room lacks: a place of the room stands for it, which is reported"
+        " (stand-in, the default), a piece of furniture is put there (furnish), or the text is refused (refuse)",
+        "stand-in|furnish|refuse",
+        default="stand-in",
+        rare=True,
+    )
+    parser: str | None = option(
+        "who reads the text instead of the built-in grammar: a language model of yours at an OpenAI-compatible URL"
+        " (http://localhost:8000/v1#NAME), in a folder for transformers, or a plug-in module:attribute; what it returns"
+        " is checked and cached (docs/motion.md)",
+        "URL|DIR|PLUGIN",
+        rare=True,
+    )
+    strict: bool = option(
+        "refuse a text of which something is not done as it says, measured on the joints; otherwise it is reported",
+        default=False,
     )
     as_recorded: bool = option(
         "the motion's positions are the radar's own (x right, y away, z up); nothing is moved or checked",

@@ -133,7 +133,7 @@ class Streamer:
             if text:
                 waiting = iter(())
                 try:
-                    acted = self.motion.act(parsed_text(text))
+                    acted = self.motion.act(parsed_text(text, self.request.parser))
                 except InputError as error:
                     if not has_begun:
                         raise

@@ -34,12 +34,13 @@ from mmweaver.motion.language.lexicon import (
     TARGETS,
     THINGS,
 )
+from mmweaver.motion.language.measures import CADENCE, SPEED
 from mmweaver.motion.language.modifiers import modifiers
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.places import AIM, Place, place_of
 from mmweaver.motion.language.places import MARK as PLACE
 from mmweaver.motion.language.suggestions import not_known
-from mmweaver.motion.language.verb_steps import step_of
+from mmweaver.motion.language.verb_steps import GAITS, step_of
 from mmweaver.motion.language.words import Word
 
 
@@ -99,13 +100,16 @@ def parse_clause(clause: Clause) -> ParsedClause:
         parsed.forms.append(_form(words[starts[k] :], at - starts[k]) if k else parsed.form)
     for token in places:
         _put_at(parsed, place_of(token))
-    kept = any(step.distance_m and step.lower in ("walk", "jog") for step in parsed.steps)
+    kept = any(step.distance_m and step.lower in GAITS for step in parsed.steps)
     lengths = any(
         other.text in DISTANCES and (one.text in NUMBERS or one.text not in (*OWN, *BOTH, "the", "with"))
         for one, other in pairwise(words)
     )  # "ten feet", "a few metres", not "his feet"
     if lengths and not kept:
         parsed.approximations.append("the distance is not kept: it follows from time and speed")
+    paced = any((step.speed_mps or step.steps_hz) and step.lower in GAITS for step in parsed.steps)
+    if not paced and any(word.text.startswith((SPEED, CADENCE)) for word in words):
+        parsed.approximations.append("the speed is not kept")
     return parsed
 
 
@@ -343,5 +347,6 @@ _KNOWN = frozenset().union(
 def is_known(word: Word) -> bool:
     """Whether a word has a known meaning, or none that matters, in a sentence about a movement."""
     text = word.text
-    is_token = text.startswith((AIM, "arc", "deg", "from_", "on_", "fraction_", "rounds_")) or len(text) == 1
+    is_token = text.startswith((AIM, "arc", "deg", "from_", "on_", "fraction_", "rounds_", SPEED, CADENCE))
+    is_token |= len(text) == 1
     return word.is_verb or text in _KNOWN or is_token or text.replace(".", "").isdigit()

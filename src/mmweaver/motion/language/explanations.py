@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from mmweaver.motion.language.described_person import strip_stature
 from mmweaver.motion.language.lexicon import NUMBERS, PRONOUNS, SEATS, TARGETS, TIMES
+from mmweaver.motion.language.measures import unmeasured
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, Step
 from mmweaver.motion.language.postures import add_shown_text, steps_of_each
@@ -173,7 +174,7 @@ def record_uncovered(
     parts = [part for step in steps for part in step.each]
     lost = [(parsed.number, how) for parsed in every_clause for how in parsed.lost]
     approximated = {parsed.number for parsed in every_clause if parsed.approximations}
-    lost += not_covered(strip_stature(given_text.lower()), parts, records, approximated)
+    lost += not_covered(strip_stature(unmeasured(given_text.lower())), parts, records, approximated)
     for number, how in lost:
         quoted = how.split("'")[1:2]
         is_reported = how in records[number].how or any(

@@ -5,6 +5,7 @@ from typing import Any
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.lexicon import ARMS, BOTH, DIRECTIONS, NUMBERS, OWN, RADAR, SEATS, SPEEDS, TARGETS, TIMES
+from mmweaver.motion.language.measures import CADENCE, SPEED
 from mmweaver.motion.language.places import AIM
 from mmweaver.motion.language.plan import Direction, Shape, Side, Step, Way, direction_of
 from mmweaver.motion.language.words import Word
@@ -144,6 +145,10 @@ def _token(about: Step, text: str, texts: set[str]) -> Step:
         return replace(about, arc_deg=float(text[3:]))
     if text.startswith("deg") and text[3:].isdigit():
         return replace(about, turn_deg=float(text[3:]))
+    if text.startswith((SPEED, CADENCE)):
+        number = float(text.partition("_")[2])
+        said = {"speed_mps": number / 100} if text.startswith(SPEED) else {"steps_hz": number / 60}
+        return replace(about, **said)
     if text.startswith("rounds_"):
         times = text.removeprefix("rounds_")
         return replace(about, arc_deg=360.0 * int(NUMBERS.get(times, times)), either_side=True)

@@ -100,6 +100,8 @@ class Repetition:
     seconds: float = 0.0  # duration stated by the sentence
     speed: Literal[-1, 0, 1] = 0  # -1 slowly, 1 quickly
     pace: float = 1.0  # the person's tempo, relative to the usual one
+    speed_mps: float = 0.0  # speed over the floor, if stated
+    steps_hz: float = 0.0  # steps per second, if stated
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -178,12 +180,14 @@ class ClauseRecord:
         status: done, approximated or not done.
         how: What is shown instead unless the words state it, and what is not shown.
         shown: Description of its steps in order (`step_names`); "" without steps.
+        facts: What was measured of each of its steps on the joints; none before that.
     """
 
     clause: str
     status: str = DONE
     how: str = ""
     shown: str = ""
+    facts: tuple[dict[str, object], ...] = ()
 
     @property
     def sentence(self) -> str:

@@ -158,7 +158,11 @@ def _round(step: Step) -> str:
 def _turn(step: Step) -> str:
     """Direction and angle of a turn, or what the person then faces."""
     if step.facing:
-        facing = {"towards": "to face the radar", "away": "to face away from the radar"}
+        facing = {
+            "towards": "to face the radar",
+            "away": "to face away from the radar",
+            "sideways": "sideways to the radar",
+        }
         aim = f"to face {step.facing} in the photo" if step.facing in _SIDES else f"to face the {step.facing}"
         return f" {facing.get(step.facing, aim)}"
     if step.turn_deg:
@@ -333,9 +337,8 @@ def doing(step: Step) -> str:
     """
     body = "" if step.lower == "stand" and step.upper else body_phrase(step)
     parts = [body, *(hand_phrase(step, part) for part in step.each if part.upper)]
-    facing = {"towards": "the radar", "away": "away from the radar"}.get(step.facing) or (
-        f"{step.facing} in the photo" if step.facing in _SIDES else f"the {step.facing}"
-    )
+    ways = {"towards": "the radar", "away": "away from the radar", "sideways": "sideways to the radar"}
+    facing = ways.get(step.facing) or (f"{step.facing} in the photo" if step.facing in _SIDES else f"the {step.facing}")
     only_looks = step.upper in ("look_around", "point") and step.facing in _SIDES
     faces = step.facing and not (step.facing == "down" or step.lower == "turn" or only_looks)
     return (
@@ -559,6 +562,24 @@ def merged(steps: list[Step]) -> list[Step]:
         }.get(step.lower, (step.lower,))
         if not (plain and result and result[-1].lower in same and not result[-1].upper):
             result.append(step)
+    return result
+
+
+def repeat_pairs(steps: list[Step], most: int) -> list[Step]:
+    """Repeats going down and up as often as the second is counted: 'sits down and stands up five times'.
+
+    Args:
+        steps: Steps in temporal order.
+        most: Number of steps up to which pairs are repeated.
+    """
+    pairs = {"stand_up": "sit_down", "kneel_up": "kneel_down", "get_up": "lie_down", "sit_down": "stand_up"}
+    result: list[Step] = []
+    for number, step in enumerate(steps):
+        result.append(step)
+        is_pair = number > 0 and step.lower in pairs and steps[number - 1].lower == pairs[step.lower]
+        if is_pair and step.count > 1 and len(steps) + 2 * step.count - 2 <= most:
+            once = [replace(one, count=0) for one in (steps[number - 1], step)]
+            result += once * (step.count - 1)
     return result
 
 

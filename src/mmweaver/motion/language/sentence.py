@@ -28,16 +28,18 @@ from mmweaver.motion.language.fallback_parsing import (
     says_more_of,
 )
 from mmweaver.motion.language.lexicon import ARMS, NUMBERS, RECOVERING
+from mmweaver.motion.language.measures import measures_in_si
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.places import room_of
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, MotionPlan, Side, Step, Way
 from mmweaver.motion.language.posture_persistence import ARM_POSTURES, persist_postures
-from mmweaver.motion.language.postures import add_shown_text, inherit_state, insert_transitions
+from mmweaver.motion.language.postures import add_shown_text, inherit_state, insert_transitions, repeat_pairs
 from mmweaver.motion.language.repetitions import RepeatedSentence, repetition_of
 from mmweaver.motion.language.rewrite_rules import rewritten
 from mmweaver.motion.language.simultaneous import going_on, sequence_steps
 from mmweaver.motion.language.suggestions import not_known
+from mmweaver.motion.language.things import face_things, looks_as_facing
 from mmweaver.motion.language.verb_steps import AIMED, SIDES
 from mmweaver.motion.language.words import Word, correct_spelling, words_of
 
@@ -79,7 +81,8 @@ def parse(text: str, *, in_part: bool = False) -> MotionPlan:
     repeated = repetition_of(text)
     if repeated.times > 1 and len(repeated.text.split()) > 1:
         return _several_times(parse(repeated.text, in_part=in_part), repeated, given_text)
-    text = rewritten(durations_in_seconds(_YOUR.sub("his", text)), "first")
+    text = looks_as_facing(measures_in_si(_YOUR.sub("his", text).lower()))
+    text = rewritten(durations_in_seconds(text), "first")
     try:
         return _parsed(apply_approximations(text, only_always=True), given_text)
     except InputError as error:
@@ -150,6 +153,7 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
     steps = inherit_state(insert_transitions(going_on(sequence)))
     said = {number: f"{record.clause} {record.how}" for number, record in records.items()}
     steps, lost = persist_postures(steps, said, {one.number for one in every_clause if one.link == "then"})
+    steps = face_things(repeat_pairs(steps, MAX_STEPS), given_text)
     for number, how in lost:
         records[number] = records[number].lowered_to(APPROXIMATED, how)
     record_uncovered(given_text, every_clause, steps, records)

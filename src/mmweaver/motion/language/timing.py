@@ -245,6 +245,7 @@ def _usual_limits(step: Step) -> tuple[float, float]:
         return BY_KEY[step.lower].least_s, CRAWLING_TO_AND_FRO_S if step.lower == "crawl" else PACING_S
     if step.distance_m and step.moves:
         usual_mps = {"jog": 2.6, "walk": 1.1}.get(step.lower, 0.7) * (0.65, 1.0, 1.3)[step.speed + 1]
+        usual_mps = step.speed_mps or usual_mps
         way_m = step.distance_m + TURN_M * max(len(step.route_m) - 1, 0)
         return way_m / (1.4 * usual_mps) + 0.3, way_m / usual_mps + 0.6
     if step.several and not step.count:  # "does squats"

@@ -309,7 +309,7 @@ def _goes_aside(step: Step) -> bool:
     turns = (step.arc_deg or step.turn_deg) and not step.either_side
     placed = step.place is not None or step.target or (step.seat and step.moves)
     to_a_side = {step.lower, step.upper} & _SETS["sideways"] and not step.arms_ahead
-    return bool(sides & {"left", "right", "side", "seat"} or turns or placed or to_a_side)
+    return bool(sides & {"left", "right", "side", "sideways", "seat"} or turns or placed or to_a_side)
 
 
 def _number(token: _Token) -> str:
@@ -339,6 +339,7 @@ def _number(token: _Token) -> str:
 
 def _is_counted(step: Step) -> bool:
     countable = any(BY_KEY[key].counted_s is not None for key in (step.upper or step.lower, step.lower))
+    countable |= step.lower in ("sit_down", "stand_up", "kneel_up", "get_up")  # `postures.repeat_pairs`
     return bool((step.count and (countable or step.count == 1)) or max(abs(step.turn_deg), abs(step.arc_deg)) >= 360)
 
 

@@ -228,7 +228,9 @@ class CollisionMap:
         Args:
             scene: The room, in the radar's frame.
         """
-        if not _latest or _latest[0].scene is not scene:
+        known = _latest[0].scene if _latest else None
+        same = known is not None and known.vertices_m is scene.vertices_m and known.photo is scene.photo
+        if not same or known is None or known.seats is not scene.seats:  # landmarks alone are no obstacles
             _latest[:] = [cls(scene)]
         return _latest[0]
 

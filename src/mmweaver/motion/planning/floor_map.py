@@ -73,6 +73,12 @@ HEIGHT_STEP_M, _MAX_CACHED = 0.05, 12
 _latest: list["FloorMap"] = []
 
 
+def _is_same_room(one: Scene, other: Scene) -> bool:
+    """Whether two scenes differ at most by their landmarks."""
+    same = one.vertices_m is other.vertices_m and one.free_space is other.free_space and one.photo is other.photo
+    return same and one.seats is other.seats
+
+
 @dataclass(frozen=True)
 class FloorMap:
     """Clearance, visibility and cost of positions (x, y) in metres in the radar's frame, from the free-space grid.
@@ -118,7 +124,12 @@ class FloorMap:
             if floor.scene is scene and floor._key == key:
                 return floor
         floor = cls(scene, *key)
-        _latest[:] = [floor, *(other for other in _latest if other.scene is scene)][:_MAX_CACHED]
+        for other in _latest:  # the same room with other landmarks
+            if other._key == key and _is_same_room(other.scene, scene):
+                own = {name: value for name, value in vars(other).items() if name not in ("scene", "place_cells")}
+                vars(floor).update(own)
+                break
+        _latest[:] = [floor, *(other for other in _latest if _is_same_room(other.scene, scene))][:_MAX_CACHED]
         return floor
 
     @property

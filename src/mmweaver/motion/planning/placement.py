@@ -29,6 +29,7 @@ Array = np.ndarray
 MAX_TRIES, TRIES, ENOUGH = 140, 28, 10  # maximum candidates until the first, for all, and found
 LEAVES_SEATS = 2  # the attempt that abandons the room's seats, also made if none of them works
 ENOUGH_SEATED = 14  # found, of more ways to sit, if the usual ones touch something
+MAX_TRIES_IF_LOST = 90  # candidates tried for one that loses nothing of the sentence
 _SMALL_M2, MAX_TRIES_IF_SMALL = 0.5, 40  # a small floor is searched quickly
 _OCCLUDED_COST, _OCCLUDED_SITTING_COST = 4.0, 1.5  # cost of a trajectory, or seat, occluded from the camera
 _NUM_OCCLUSION_TESTS = 12  # along a trajectory
@@ -152,11 +153,15 @@ def place(
         **_open_choices(floor, conditions),
     )
     trajectories: list[Trajectory] = []
+    best_lost = np.inf
     enough = ENOUGH_SEATED if attempt and any(step.uses_seat for step in plan.steps) else ENOUGH
     enough = MAX_TRIES if floor.is_tight else enough  # all of them fit: search for the one that touches least
     is_small = not floor.is_tight and len(floor.walkable_m) * floor.cell_m**2 < _SMALL_M2
     for tried in range(MAX_TRIES_IF_SMALL if is_small else MAX_TRIES):
-        if len(trajectories) >= enough or (trajectories and tried >= TRIES and not floor.is_tight):
+        is_lossless = best_lost < 1e-9
+        if is_lossless and (len(trajectories) >= enough or (tried >= TRIES and not floor.is_tight)):
+            break
+        if trajectories and not is_lossless and tried >= MAX_TRIES_IF_LOST:
             break
         try:
             trajectory = sampler.sample()
@@ -165,6 +170,7 @@ def place(
         if others and not _is_clear_of(trajectory, plan, others):
             continue
         trajectories.append(trajectory)
+        best_lost = min(best_lost, trajectory.lost)
     if not trajectories and attempt < LEAVES_SEATS and after is None and starts_seated(plan):
         return place(plan, floor, body, conditions, attempt=LEAVES_SEATS)
     if not trajectories:

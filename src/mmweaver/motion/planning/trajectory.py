@@ -58,6 +58,10 @@ def preferred_speed_mps(step: Step, rng: np.random.Generator) -> float:
     Returns:
         Speed in m/s.
     """
+    if step.speed_mps:
+        return step.speed_mps
+    if step.steps_hz and step.lower == "walk":
+        return walking_mps(step.steps_hz)
     if step.lower == "jog" and step.style == "jog":  # "jogs", "trots"; else "runs", "sprints"
         low, high = ((1.8, 2.1), (2.1, 2.7), (2.7, 3.2))[step.speed + 1]
     elif step.lower == "jog":
@@ -75,6 +79,11 @@ def preferred_speed_mps(step: Step, rng: np.random.Generator) -> float:
     return float(rng.uniform(low, high)) * (0.7 if step.direction == Way.BACKWARDS else 1.0) * step.pace
 
 
+def walking_mps(steps_hz: float) -> float:
+    """Usual walking speed at a step rate, in m/s (the inverse of the step rate of `gait.walking_style`)."""
+    return float(np.clip(1.3 * (steps_hz / 1.87) ** (1 / 0.55), 0.3, 2.0))
+
+
 def slowest_mps(step: Step, speed_mps: float) -> float:
     """Lowest speed to which a short path slows a gait; on a shorter one, the body walks faster and then stands.
 
@@ -85,6 +94,8 @@ def slowest_mps(step: Step, speed_mps: float) -> float:
     Returns:
         Speed in m/s.
     """
+    if step.speed_mps or step.steps_hz:
+        return 0.95 * speed_mps
     return max(SLOWEST_MPS[step.lower], (RUN_SLOWED_TO if step.lower == "jog" else SLOWED_TO) * speed_mps)
 
 
@@ -111,6 +122,8 @@ class Trajectory:
         from_seat: Whether the body has just stood up: the seat's own edge does not block the first metre.
         turn_rate_radps: Angular rate of turns on the spot.
         heading_is_given: Whether the initial heading is prescribed; an undirected walk begins that way.
+        reserve_m: Floor ahead that straight walks leave free for what follows, such as a fall.
+        lost: Share of what the sentence asks for that the path loses (`path_facts.lost_share`).
     """
 
     floor: FloorMap
@@ -131,6 +144,8 @@ class Trajectory:
     from_seat: bool = False
     turn_rate_radps: float = TURN_RATE_RADPS
     heading_is_given: bool = False
+    reserve_m: float = 0.0
+    lost: float = 0.0
 
     def __post_init__(self) -> None:
         self.start_m = (float(self.position_m[0]), float(self.position_m[1]))
@@ -257,28 +272,58 @@ def walk_straight(trajectory: Trajectory, step: Step, direction_rad: float, *, f
     """
     begin = face_along(trajectory, step, direction_rad, step.start_s, first=first)
     end = _stop_s(step, begin)
-    goes_on = step.lower not in HOPPING  # hopping begins and ends on the spot
+    goes_on = step.lower not in HOPPING and not step.count  # these begin and end on the spot
     last = last and end >= step.end_s - 1e-9 and goes_on
     ramps = ramps_of(end - begin, first=first and goes_on, last=last, ramp_s=_ramp_s(step))
     effective = end - begin - sum(ramps) / 2
     speed = preferred_speed_mps(step, trajectory.rng)
     wanted = speed * effective
     if step.distance_m:
-        speed = min(max(step.distance_m / max(effective, 0.2), SLOWEST_MPS[step.lower]), 1.6 * speed)
-        wanted = step.distance_m
-    free = trajectory.free_length_m(direction_rad, wanted)
-    if free >= min(slowest_mps(step, speed) * effective, step.distance_m or np.inf):
+        _walk_distance(trajectory, step, direction_rad, speed, (begin, end), first=first and goes_on, last=last)
+        return
+    free = trajectory.free_length_m(direction_rad, wanted + trajectory.reserve_m)
+    free = min(max(free - trajectory.reserve_m, min(free, SHORTEST_WALK_M)), wanted)
+    if free >= slowest_mps(step, speed) * effective:
         trajectory.cost += 2.0 * (1 - free / wanted)
         trajectory.go(step, direction_rad, free, (begin, end), ramps)
         return
     if free < SHORTEST_WALK_M * SLOWEST_MPS[step.lower] / SLOWEST_MPS["walk"]:
         raise NoTrajectory(f"only {free:.1f} m")
     stop_ramps = (ramps[0], _ramp_s(step))
-    speed = max(0.85 * speed, SLOWEST_MPS[step.lower])
+    speed = speed if step.speed_mps or step.steps_hz else max(0.85 * speed, SLOWEST_MPS[step.lower])
     lasts = free / speed + sum(stop_ramps) / 2
     trajectory.cost += 1.5 + 2.0 * (1 - free / wanted)
     trajectory.go(step, direction_rad, free, (begin, begin + lasts), stop_ramps)
     _say_stopped(trajectory, step, free)
+
+
+def _walk_distance(
+    trajectory: Trajectory,
+    step: Step,
+    direction_rad: float,
+    speed_mps: float,
+    span_s: tuple[float, float],
+    *,
+    first: bool,
+    last: bool,
+) -> None:
+    """Walks the stated distance at about the preferred speed, then stands; as far as there is floor and time.
+
+    Raises NoTrajectory if there is less than about one step of free floor.
+    """
+    available_s, ramp_s = span_s[1] - span_s[0], _ramp_s(step)
+    fastest = speed_mps * (1.1 if step.speed_mps else 1.6)
+    wanted = min(step.distance_m, fastest * max(available_s - ramp_s / 2, 0.2))
+    free = trajectory.free_length_m(direction_rad, wanted)
+    if free < min(0.4, 0.9 * wanted):
+        raise NoTrajectory(f"only {free:.1f} m")
+    ramps = ramps_of(available_s, first=first, last=False, ramp_s=ramp_s)
+    lasts = free / speed_mps + sum(ramps) / 2
+    if lasts > available_s - 0.05:
+        ramps = ramps_of(available_s, first=first, last=last, ramp_s=ramp_s)
+        lasts = available_s
+    ramps = (min(ramps[0], 0.42 * lasts), min(ramps[1], 0.42 * lasts))
+    trajectory.go(step, direction_rad, free, (span_s[0], span_s[0] + lasts), ramps)
 
 
 def _say_stopped(trajectory: Trajectory, step: Step, gone_m: float) -> None:

@@ -20,6 +20,7 @@ from mmweaver.motion.planning.approaches import (
     start_of_walk,
     walk_to_seat,
 )
+from mmweaver.motion.planning.asked import Quantity, quantities, turns_the_body
 from mmweaver.motion.planning.body_state import BodyState
 from mmweaver.motion.planning.curved_and_lateral_paths import (
     check_floor_space,
@@ -27,7 +28,14 @@ from mmweaver.motion.planning.curved_and_lateral_paths import (
     lay_curved_or_lateral,
     turn_by,
 )
-from mmweaver.motion.planning.floor_map import FloorMap, bearing_rad, distance_m, distances_m, random_choice
+from mmweaver.motion.planning.floor_map import (
+    FloorMap,
+    bearing_rad,
+    distance_m,
+    distances_m,
+    random_choice,
+)
+from mmweaver.motion.planning.path_facts import lost_share, path_facts
 from mmweaver.motion.planning.seating import (
     STOOL_HEIGHT_M,
     Sitting,
@@ -49,6 +57,7 @@ from mmweaver.motion.planning.seating import (
 from mmweaver.motion.planning.targets import (
     faced_landmarks,
     goes_to_target,
+    kinds_of,
     start_for_target,
     walk_along,
     walk_to_target,
@@ -64,12 +73,13 @@ from mmweaver.motion.planning.trajectory import (
 )
 
 Array = np.ndarray
-FAVOURITE_COST_PER_M = 0.7
+FAVOURITE_COST_PER_M, LOST_COST = 0.7, 12.0
+FALLING_ON_FLOOR = ("fall", "lie_down", "lie", "crawl")
 _SAME_PLACE_M = 0.1
 _SAME_SEAT_M = 0.6  # places to sit within this distance belong to one seat
 _KNOWN_WAYS = 0.5  # share of the tries that use known ways to sit, if the usual ones collide
 _PULLED, _PULLED_M, _PULLED_TURN_RAD = 0.4, (0.08, 0.45), 0.5  # of pulled-out chairs: probability, distance, turn
-_STRAIGHT = (*Side, Way.TOWARDS, Way.AWAY, None)
+_STRAIGHT = (*Side, Way.TOWARDS, Way.AWAY, Way.FORWARDS, Way.BACKWARDS, None)
 _DEFAULT_MPS = {"walk": 1.15, "jog": 2.8, "limp": 0.75, "stagger": 0.75, "crawl": 0.35, "walking_lunge": 0.5}
 _OF_USUAL = 0.7  # share of its usual length for which a walk needs room
 _RUN_OF_USUAL = 1.0  # the same for a run, which is slowed down less
@@ -82,6 +92,9 @@ _FALLS_OFF_STOOL = (
 _NEAR_START_M = 1.0  # a seat within this distance of the requested start is meant
 _AT_START_M = 0.3  # the same if a heading is also requested
 _FACES_AS_ASKED_RAD = 0.35
+_BEFORE_THING_M = 0.4  # from the cells of a place to where one stands to use a thing there
+_AT_TABLE = 0.6  # share of the sitters at a table that get a stool before it where no seat is
+_STOOL_TRIES = 8  # places at a table
 _SEAT_AT_PLACE_M = 0.7  # from the free floor of a place
 
 
@@ -131,6 +144,7 @@ class CandidateSampler:
         """
         seats = self._seats()
         trajectory, sitting = self._start(seats)
+        trajectory.reserve_m = float(self.rng.uniform(0, 1.5 * self._reserve_m)) if self._reserve_m else 0.0
         for k, step in enumerate(self.plan.steps):
             trajectory.moves.append([])
             following = self.plan.steps[k + 1] if k + 1 < len(self.plan.steps) else None
@@ -140,7 +154,7 @@ class CandidateSampler:
                 sitting = target.sitting if target and following and following.lower == "sit_down" else None
             elif step.lower == "turn" and step.turn_deg:
                 turn_by(trajectory, step)
-            elif step.lower == "turn" or (step.facing and _turns_the_body(step)):
+            elif step.lower == "turn" or (step.facing and turns_the_body(step)):
                 _lay_turn(trajectory, step, first=k == 0)
             if not self._is_down_there(k):
                 check_floor_space(trajectory, step, self.body)
@@ -164,11 +178,16 @@ class CandidateSampler:
                 wanted = max(CLEARANCE_M[step.lower], CLEARANCE_M.get(step.upper, 0.0))
                 trajectory.cost += 2.0 * max(0.0, wanted - float(self.floor.clearance_at(trajectory.position_m)))
                 trajectory.cost += float(self.floor.cost_at(trajectory.position_m))
-        trajectory.cost += float(self.rng.uniform(0, 0.5))
+        self._rate(trajectory)
+        return trajectory
+
+    def _rate(self, trajectory: Trajectory) -> None:
+        """Adds the cost of what the path loses of the sentence, of a start far from the favourite, and of chance."""
+        trajectory.lost = lost_share(self._asked, path_facts(trajectory, self.plan.steps))
+        trajectory.cost += LOST_COST * trajectory.lost + float(self.rng.uniform(0, 0.5))
         if self.favourite_m is not None and self.start_m is None:
             gap_m = distance_m(trajectory.start_m, self.favourite_m)
             trajectory.cost += FAVOURITE_COST_PER_M * min(gap_m, 2.0)
-        return trajectory
 
     def _is_down_there(self, number: int) -> bool:
         """Whether the body still lies or kneels as the previous motion left it, or rises from there in this step."""
@@ -176,6 +195,17 @@ class CandidateSampler:
         before, step = self.plan.steps[:number], self.plan.steps[number]
         stayed = bool(down) and all(one.posture == down for one in before)
         return stayed and (step.posture == down or step.lower in ("get_up", "kneel_up"))
+
+    @cached_property
+    def _asked(self) -> list[list[Quantity]]:
+        return [quantities(step, self.floor.scene) for step in self.plan.steps]
+
+    @cached_property
+    def _reserve_m(self) -> float:
+        """Floor to keep free for a fall forwards after a walk."""
+        walks = [k for k, step in enumerate(self.plan.steps) if step.moves]
+        falls = [step for step in self.plan.steps[walks[0] :] if step.lower in FALLING_ON_FLOOR] if walks else []
+        return 1.2 if falls else 0.0
 
     @cached_property
     def _usable_seats(self) -> list[Sitting]:
@@ -254,8 +284,10 @@ class CandidateSampler:
             facing = bearing_rad(-spot) + self.off_radar_rad
         if any(step.posture in ("floor", "knees") for step in self.plan.steps):
             facing = float(self.rng.uniform(-np.pi, np.pi))  # wherever the floor is free
-        if first.facing and _turns_the_body(first):
-            facing = _facing_rad(first, spot, self.floor.scene) + float(self.rng.normal(0, 0.05))
+        if first.lower == "turn" and any(step.moves for step in self.plan.steps) and self.rng.random() < 0.5:
+            facing = float(self.rng.uniform(-np.pi, np.pi))  # what follows needs floor in some direction
+        if first.facing and turns_the_body(first):
+            facing = _facing_rad(first, spot, self.floor.scene, facing) + float(self.rng.normal(0, 0.04))
         if self.heading_rad is not None:
             facing = self.heading_rad
         return self._trajectory(spot, facing, heading_is_given=self.heading_rad is not None), None
@@ -295,7 +327,8 @@ class CandidateSampler:
             return np.array(route_m[0], float)
         if first.place is not None and not (first.moves and first.place.is_goal):
             cells = self.floor.place_cells[first.place]
-            return random_choice(cells, self.rng)
+            before = self._before_thing(first, cells)
+            return random_choice(cells, self.rng) if before is None else before
         if first.moves and goes_to_target(first) and self.rng.random() < 0.8:
             spot = start_for_target(first, self.floor, self.rng)
             if spot is not None:
@@ -309,15 +342,31 @@ class CandidateSampler:
         spot = random_choice(cells, self.rng)
         return spot + self.rng.uniform(-0.3, 0.3, 2) * self.floor.cell_m
 
+    def _before_thing(self, step: Step, cells: Float[Array, "cell 2"]) -> Float[Array, "2"] | None:
+        """The place before a thing that the step acts on, among the cells of its place; None if it acts on none."""
+        if step.place is None or step.facing != step.place.landmark:
+            return None
+        marks = [mark for mark in self.floor.scene.landmarks if mark.kind in kinds_of(step.facing)]
+        spots = [np.asarray(mark.approach_m, float) for mark in marks]
+        spots = [spot for spot in spots if len(cells) and distances_m(cells, spot).min() < _BEFORE_THING_M]
+        if not spots:
+            return None
+        spot = random_choice(spots, self.rng)
+        return spot if bool(self.floor.can_stand(spot)) else cells[int(np.argmin(distances_m(cells, spot)))]
+
     def _open_starts(self, step: Step) -> Float[Array, "cell 2"]:
         """Places to start at: for a straight walk those with enough room, else those with the most."""
         if not step.moves or step.lower not in _DEFAULT_MPS or step.arc_deg or step.direction not in _STRAIGHT:
             return self.floor.walkable_m
         if id(step) not in self._roomy_starts:
-            cells, free_m = self.floor.straight_starts(step.direction)
+            relative = step.direction in (Way.FORWARDS, Way.BACKWARDS)
+            cells, free_m = self.floor.straight_starts(None if relative else step.direction)
             of_usual = _RUN_OF_USUAL if step.lower == "jog" else _OF_USUAL
             enough_m = of_usual * _DEFAULT_MPS[step.lower] * step.pace * (step.end_s - step.start_s)
-            self._roomy_starts[id(step)] = cells[free_m >= min(enough_m, np.quantile(free_m, 1 - _LONGEST_SHARE))]
+            share = _LONGEST_SHARE
+            if step.distance_m or self._reserve_m:  # as long as asked, with floor for what follows
+                enough_m, share = (step.distance_m or enough_m) + self._reserve_m + 0.05, _LONGEST_SHARE / 4
+            self._roomy_starts[id(step)] = cells[free_m >= min(enough_m, np.quantile(free_m, 1 - share))]
         return self._roomy_starts[id(step)]
 
     @cached_property
@@ -340,6 +389,10 @@ class CandidateSampler:
         cost, notes = 0.0, []
         near = [seat for seat in seats if self._is_meant(seat, named=bool(self.plan.steps[0].seat))]
         falls_off = any(step.lower == "fall_off" for step in self.plan.steps)
+        at_table = self._stool_at_thing()
+        if at_table is not None and (not near or self.rng.random() < _AT_TABLE):
+            notes.append(stool_note(at_table, none_at_all=not self.floor.scene.seats))
+            return self._trajectory(at_table.feet_m, at_table.facing_rad, cost=3.0 * bool(near), notes=notes), at_table
         if near and not (falls_off and self.rng.random() < _FALLS_OFF_STOOL):
             sitting = random_choice(near, self.rng)
             is_blocked = sitting.chair is None and not self.floor.clearance_at(sitting.feet_m) > 0
@@ -362,6 +415,25 @@ class CandidateSampler:
             cost += float(self.floor.cost_at(spot)) + 2.0 * max(0.0, 0.5 - float(self.floor.clearance_at(spot)))
         return self._trajectory(sitting.feet_m, sitting.facing_rad, cost=cost, notes=notes), sitting
 
+    def _stool_at_thing(self) -> Sitting | None:
+        """A stool before the thing that a sitter faces, if there is room for it."""
+        first = self.plan.steps[0]
+        if not first.facing or self.start_m is not None:
+            return None
+        marks = [mark for mark in self.floor.scene.landmarks if mark.kind in kinds_of(first.facing)]
+        if not marks:
+            return None
+        for attempt in range(_STOOL_TRIES):
+            mark = random_choice(marks, self.rng)
+            spot = np.asarray(mark.approach_m, float)
+            if attempt and first.place is not None:
+                spot = random_choice(self.floor.place_cells[first.place], self.rng)
+            facing = bearing_rad(np.asarray(mark.position_m[:2], float) - spot)
+            stool = stool_at(spot, facing + float(np.clip(self.rng.normal(0, 0.1), -0.25, 0.25)), self.body)
+            if stool_fits(stool, self.floor):
+                return stool
+        return None
+
     def _is_meant(self, seat: Sitting, *, named: bool) -> bool:
         """Whether a person seated at the start may take the seat: near the requested start, with the requested heading.
 
@@ -372,11 +444,6 @@ class CandidateSampler:
         if self.start_m is not None and distance_m(seat.seat_m, self.start_m) >= within_m:
             return False
         return not strict or abs(signed_angle_rad(seat.facing_rad, self.heading_rad)) < _FACES_AS_ASKED_RAD
-
-
-def _turns_the_body(step: Step) -> bool:
-    """Whether the body turns to the step's facing; pointing aside and looking leave it unchanged."""
-    return step.upper not in ("point", "look_around") or step.facing not in ("left", "right", "down")
 
 
 def _changes_place(step: Step) -> bool:
@@ -426,18 +493,37 @@ def _direction_rad(trajectory: Trajectory, step: Step) -> float | None:
         return float(np.arctan2(-y, -x)) + 0.3 * jitter
     if step.direction == Way.AWAY:
         return float(np.arctan2(y, x)) + 0.3 * jitter
-    if step.direction == Way.FORWARDS and trajectory.moves[:-1]:
-        return trajectory.heading_rad
-    if step.direction == Way.BACKWARDS:
-        return trajectory.heading_rad + np.pi
+    if step.direction in (Way.FORWARDS, Way.BACKWARDS) or (step.distance_m and step.direction is None):
+        return _relative_rad(trajectory, step)
     if step.direction == Way.BACK:
         back_to = trajectory.last_direction_rad
         return back_to + np.pi if back_to is not None else trajectory.heading_rad + np.pi
     return None
 
 
-def _facing_rad(step: Step, spot: Float[Array, "2"], scene: Scene) -> float:
-    """Heading of a body at `spot` (x, y) that faces left, right, towards or away from the radar, or a landmark."""
+def _relative_rad(trajectory: Trajectory, step: Step) -> float | None:
+    """Direction of a walk relative to the body: ahead or back; at the start, where the room leaves space for it."""
+    is_back = step.direction == Way.BACKWARDS
+    ahead = trajectory.heading_rad + np.pi * is_back
+    is_open = not trajectory.moves[:-1] and not trajectory.heading_is_given and not trajectory.turns
+    is_plain = step.lower in ("walk", "jog", "limp", "stagger", "crawl", "walking_lunge") and not step.arc_deg
+    if not is_plain or (is_open and step.direction == Way.FORWARDS and not step.distance_m):
+        return None if step.direction == Way.FORWARDS and is_open else ahead
+    wanted = step.distance_m or min(_DEFAULT_MPS.get(step.lower, 1.0) * (step.end_s - step.start_s), 3.0)
+    free = trajectory.free_length_m(ahead, wanted)
+    if free >= wanted - 1e-9 or not (is_open or step.direction is None):
+        return ahead
+    directions = trajectory.rng.uniform(0, 2 * np.pi) + np.arange(16) * np.pi / 8
+    lengths = trajectory.free_lengths_m(directions, wanted)
+    best = np.flatnonzero(lengths >= lengths.max() - 1e-6)
+    return float(directions[int(best[trajectory.rng.integers(len(best))])])
+
+
+def _facing_rad(step: Step, spot: Float[Array, "2"], scene: Scene, near_rad: float) -> float:
+    """Heading of a body at `spot` (x, y) that faces left, right, the radar, away from it, or a landmark.
+
+    Of the two headings sideways to the radar it is the one nearer to `near_rad`.
+    """
     if step.facing in ("left", "right"):
         return np.pi if step.facing == "left" else 0.0
     aims = [np.asarray(mark.position_m[:2]) - spot for mark in faced_landmarks(step, scene)]
@@ -445,6 +531,8 @@ def _facing_rad(step: Step, spot: Float[Array, "2"], scene: Scene) -> float:
         x, y = min(aims, key=lambda aim: float(np.hypot(*aim)))
         return float(np.arctan2(y, x))
     away = bearing_rad(spot)
+    if step.facing == "sideways":
+        return min(away + np.pi / 2, away - np.pi / 2, key=lambda one: abs(signed_angle_rad(one, near_rad)))
     return away if step.facing == "away" else away + np.pi
 
 
@@ -457,10 +545,11 @@ def _lay_turn(trajectory: Trajectory, step: Step, *, first: bool) -> None:
             trajectory.start_heading_rad = trajectory.heading_rad = trajectory.heading_rad + float(
                 trajectory.rng.choice([-1.0, 1.0]) * trajectory.rng.uniform(1.2, 2.2)
             )
-        heading = _facing_rad(step, trajectory.position_m, trajectory.floor.scene)
+        heading = _facing_rad(step, trajectory.position_m, trajectory.floor.scene, trajectory.heading_rad)
     else:
-        quarter = float(np.pi / 2 + trajectory.rng.normal(0, 0.08))
-        about = float(trajectory.rng.choice([-1.0, 1.0]) * (np.pi - abs(trajectory.rng.normal(0, 0.06)) - 0.01))
+        quarter = float(np.pi / 2 + np.clip(trajectory.rng.normal(0, 0.06), -0.12, 0.12))
+        about = np.pi - min(abs(trajectory.rng.normal(0, 0.06)), 0.12) - 0.01
+        about = float(trajectory.rng.choice([-1.0, 1.0]) * about)
         heading = trajectory.heading_rad + {"left": quarter, "right": -quarter}.get(step.direction, about)
     span_s = step.end_s - step.start_s
     trajectory.turn_to(heading, step.start_s, slower=SLOWER_TURNS[step.speed + 1], most_s=span_s)

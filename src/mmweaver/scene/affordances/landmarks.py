@@ -11,6 +11,7 @@ from jaxtyping import Float
 
 from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.errors import InputError
+from mmweaver.core.placed_thing import PlacedThing
 from mmweaver.core.records import LANDMARK_KINDS, FreeSpace, Landmark, Plane, Scene, Seat
 from mmweaver.core.shapes import Array, GridMask
 from mmweaver.scene.affordances.seats import bed_squares
@@ -162,7 +163,7 @@ _MAX_SOLID_SHARE = 0.6  # of a table's visible front; chests are solid below the
 _BODY_RADIUS_M, _MAX_REACH_M = 0.27, 1.1  # a body's half width, and how far from a landmark one may stand to use it
 _MIN_SPACING_M = 0.5  # between landmarks of a kind
 _BEARING_BIN_RAD = 0.02
-_MAX_GIVEN_M = 10.0
+_MAX_GIVEN_M, _BEFORE_FRONT_M = 10.0, 0.6  # of given landmarks: farthest, and where one stands before their front
 
 
 def find_landmarks(
@@ -191,16 +192,16 @@ def find_landmarks(
         candidates = _class_candidates(view, planes)
     else:
         candidates = [*_horizontal_tops(view, height_map, seats), *find_openings(view, planes)]
-    found = [_find_approach(candidate, free_space) for candidate in candidates]
+    found = [find_approach(candidate, free_space) for candidate in candidates]
     return tuple(sorted(found, key=lambda mark: (mark.kind, float(np.hypot(*mark.position_m[:2])))))
 
 
-def add_landmarks(scene: Scene, given: Sequence[tuple[str, tuple[float, float]]]) -> Scene:
+def add_landmarks(scene: Scene, given: Sequence[PlacedThing | tuple[str, tuple[float, float]]]) -> Scene:
     """Adds landmarks given by the user; they replace the detected ones of the same kinds.
 
     Args:
         scene: The room.
-        given: Kind and position (x, y) in metres of each, in the radar's frame.
+        given: Kind and position (x, y) in metres of each, in the radar's frame, and perhaps where its front faces.
 
     Returns:
         The scene with these landmarks and an assumption that names each.
@@ -209,7 +210,9 @@ def add_landmarks(scene: Scene, given: Sequence[tuple[str, tuple[float, float]]]
         InputError: If a kind is not one that sentences may name, or a position is behind the radar or beyond 10 m.
     """
     added = []
-    for kind, (x, y) in given:
+    things = [PlacedThing.of(one) for one in given]
+    for one in things:
+        kind, (x, y) = one.kind, one.place_m
         if kind not in LANDMARK_KINDS:
             raise InputError(f"no sentence goes to a {kind!r}; known: {', '.join(LANDMARK_KINDS)}")
         if not (abs(x) <= _MAX_GIVEN_M and 0 < y <= _MAX_GIVEN_M):
@@ -219,14 +222,25 @@ def add_landmarks(scene: Scene, given: Sequence[tuple[str, tuple[float, float]]]
             )
         position_m = np.array([x, y, scene.floor_z_m + 1.0])
         candidate = LandmarkCandidate(kind=kind, position_m=position_m, squares_m=np.array([[x, y]]))
-        added.append(_find_approach(candidate, scene.free_space))
-    kinds = {kind for kind, _ in given}
-    notes = tuple(f"The {kind} at x {x:g} m, y {y:g} m was given by the user, not detected." for kind, (x, y) in given)
+        found = find_approach(candidate, scene.free_space)
+        added.append(found if one.facing_rad is None else _in_front(found, one.facing_rad))
+    kinds = {one.kind for one in things}
+    notes = tuple(
+        f"The {one.kind} at x {one.place_m[0]:g} m, y {one.place_m[1]:g} m was given by the user, not detected."
+        for one in things
+    )
     return replace(
         scene,
         landmarks=(*(mark for mark in scene.landmarks if mark.kind not in kinds), *added),
         assumptions=(*scene.assumptions, *notes),
     )
+
+
+def _in_front(mark: Landmark, front_rad: float) -> Landmark:
+    """The landmark with the place to stand before its front."""
+    x, y = mark.position_m[:2] + _BEFORE_FRONT_M * np.array([np.cos(front_rad), np.sin(front_rad)])
+    facing_rad = float((front_rad + 2 * np.pi) % (2 * np.pi) - np.pi)
+    return replace(mark, approach_m=(float(x), float(y)), facing_rad=facing_rad)
 
 
 def _horizontal_tops(view: AlignedPhoto, height_map: HeightMap, seats: tuple[Seat, ...]) -> list[LandmarkCandidate]:
@@ -333,7 +347,7 @@ def _class_candidates(view: AlignedPhoto, planes: tuple[Plane, ...]) -> list[Lan
     return found
 
 
-def _find_approach(candidate: LandmarkCandidate, free_space: FreeSpace) -> Landmark:
+def find_approach(candidate: LandmarkCandidate, free_space: FreeSpace) -> Landmark:
     """The landmark with the place to stand at: the nearest free place that is wide enough for a body."""
     from scipy import ndimage
 

@@ -48,7 +48,7 @@ def make_room_mesh(size_m: tuple[float, float, float], placed: Sequence[PlacedPi
     solids = [(corners, _QUAD, surface, -1) for corners, surface in _shell(size_m, palette)]
     for number, item in enumerate(placed):
         for part in item.piece.parts:
-            corners, triangles = _triangles(part)
+            corners, triangles = part_triangles(part)
             solids.append((item.points(corners), triangles, part.appearance, number))
     appearances = list(dict.fromkeys(surface for _, _, surface, _ in solids))
     index = {surface: number for number, surface in enumerate(appearances)}
@@ -77,7 +77,7 @@ def _shell(size_m: tuple[float, float, float], palette: Palette) -> list[tuple[n
     return [(np.array(corners, float), appearance) for corners, appearance in quads]
 
 
-def _triangles(part: Part) -> tuple[Vertices, Faces]:
+def part_triangles(part: Part) -> tuple[Vertices, Faces]:
     low, high = np.array(part.low_m), np.array(part.high_m)
     if part.shape == "rounded":
         return _rounded(low, high)

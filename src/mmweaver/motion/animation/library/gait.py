@@ -73,6 +73,10 @@ def walking_style(act: StepContext, speed_mps: float) -> Style:
     rng, height_m = act.rng, act.height_m
     share = min(speed_mps / 1.3, 1.4)
     steps_hz = 1.87 * max(share, 0.25) ** 0.55 * (REFERENCE_HEIGHT_M / height_m) ** 0.5 * np.exp(rng.normal(0, 0.03))
+    counted_s = sum(move.end_s - move.start_s for move in act.moves) - 0.3  # of `trajectory.walk_straight`
+    if act.count and act.moves and counted_s > 0:
+        steps_hz = act.count / counted_s
+    steps_hz = act.step.steps_hz or steps_hz
     vigour = share**1.5 * np.exp(rng.normal(0, 0.3))
     leg_m, reach_m = act.body.leg_m, 0.46 * speed_mps / float(steps_hz)  # of the leading leg when its heel strikes
     drop_m = leg_m - (leg_m**2 - min(reach_m, 0.5 * leg_m) ** 2) ** 0.5
@@ -104,6 +108,7 @@ def jogging_style(act: StepContext, speed_mps: float) -> Style:
         speed_mps: Speed in m/s.
     """
     steps_hz, share = act.tempo(2.35, 2.6, 2.9, 0.08), min(speed_mps / 2.0, 1.7)  # of an easy indoor jog
+    steps_hz = act.step.steps_hz or steps_hz
     vigour = np.exp(act.rng.normal(0, 0.12))
     return Style(
         **MOVEMENTS["jog"],
@@ -216,7 +221,8 @@ def _strikes_s(act: StepContext, style: Style, first_side: int) -> Float[np.ndar
     """Times (k,) of the foot strikes in seconds, alternating feet, from well before the motion to well after it."""
     period = 1 / style.steps_hz
     # From standing, the first foot leaves the floor at once; a motion under way may begin at any phase.
-    lead = act.rng.uniform(0, period) if act.first else period * (1 - style.double_support) - 0.02
+    under_way = act.first and not act.count
+    lead = act.rng.uniform(0, period) if under_way else period * (1 - style.double_support) - 0.02
     anchor = act.start_s + lead
     low = int(np.floor((float(act.time_s[0]) - anchor) / period)) - 4
     high = int(np.ceil((float(act.time_s[-1]) - anchor) / period)) + 5

@@ -1,0 +1,170 @@
+"""The motion of a request in a room: composed, verified, and in a wider range window where the sentence needs it."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.range_window import with_range
+from mmweaver.core.records import Scene
+from mmweaver.motion.compose import Motion
+from mmweaver.motion.mocap.clip_placement import place_clip
+from mmweaver.motion.multi_person import compose_people
+from mmweaver.motion.people import subject_of
+from mmweaver.motion.planning.missing import FURNISH, missing_things
+from mmweaver.motion.verification.verify import check_done
+from mmweaver.weaver.generation import Room
+from mmweaver.weaver.parsed_request import ParsedRequest
+
+NEAREST_M, FARTHEST_M, MARGIN_M = 0.3, 12.0, 0.3  # of widened windows: limits, and beyond the body
+GAIN = 0.05  # less loss than this is not worth another window
+LOST_BY_ERROR = 10.0
+
+
+def compose_request(request: ParsedRequest, scene: Scene) -> tuple[Motion, ...]:
+    """Composes the motion of each person; a recorded motion replaces that of the first.
+
+    Args:
+        request: The parsed request.
+        scene: The room in the camera's coordinates.
+
+    Returns:
+        One motion per person, without collisions with the room and each other.
+
+    Raises:
+        InputError: If the room has no space for the motion, or, with `request.strict`, something is not done.
+    """
+    recorded = None
+    if not request.people:
+        return ()
+    first = request.people[0]
+    if request.motion is not None:
+        clip = request.motion if first.height_m is None else request.motion.scaled_to(first.height_m)
+        recorded = place_clip(
+            clip,
+            scene,
+            duration_s=request.duration_s,
+            seed=request.seed,
+            range_window_m=request.range_window_m,
+            start_m=first.start_m,
+            heading_rad=request.heading_rad,
+            as_recorded=request.as_recorded,
+        )
+        who = subject_of(request.seed) if first.subject is None else first.subject
+        recorded = replace(recorded, pose=replace(recorded.pose, subject=who))
+    people = compose_people(
+        [person.plan for person in request.people],
+        scene,
+        seed=request.seed,
+        range_window_m=request.range_window_m,
+        starts_m=[person.start_m for person in request.people],
+        heights_m=[person.height_m for person in request.people],
+        subjects=[person.subject for person in request.people],
+        first=recorded,
+        heading_rad=request.heading_rad,
+        farthest_m=request.config.farthest_bin_m,
+        missing=request.missing,
+    )
+    for person in people if request.strict else ():
+        check_done(person.plan.text, person.clauses)
+    return people
+
+
+def lost_of(people: Sequence[Motion]) -> float:
+    """How much the joints of all people lose of what their sentences ask for."""
+    steps = [step for person in people for step in person.verified]
+    return float(sum(0.1 + deviation.lost for step in steps for deviation in step.deviations))
+
+
+def widened(request: ParsedRequest, scene: Scene) -> tuple[ParsedRequest, tuple[Motion, ...]]:
+    """Composes a request in the radar's window, or, if the room has more floor and the sentence needs it, a wider one.
+
+    Args:
+        request: The parsed request.
+        scene: The room.
+
+    Returns:
+        The request, with the window that it needs, and the motions; an assumption of the first states the window.
+
+    Raises:
+        InputError: If no window serves.
+    """
+    first_error: InputError | None = None
+    people: tuple[Motion, ...] = ()
+    try:
+        people = compose_request(request, scene)
+    except InputError as error:
+        first_error = error
+    lost = LOST_BY_ERROR if first_error is not None else lost_of(people)
+    wide = _wide(request.config, scene) if lost > 0 else None
+    if wide is None:
+        if first_error is not None:
+            raise first_error
+        return request, people
+    try:
+        more = compose_request(replace(request, config=wide), scene)
+    except InputError:
+        if first_error is not None:
+            raise first_error from None
+        return request, people
+    if lost_of(more) > lost - GAIN:
+        return request, people
+    config = _narrowed(request.config, wide, more)
+    (near, far), (old_near, old_far) = _window(config), _window(request.config)
+    note = (
+        f"the range window is widened from {old_near:.2f} to {old_far:.2f} m to {near:.2f} to {far:.2f} m, which"
+        f" {request.text!r} needs in this room; --range sets it"
+    )
+    first = replace(more[0], assumptions=(*more[0].assumptions, note))
+    return replace(request, config=config), (first, *more[1:])
+
+
+def _window(config: RadarConfig) -> tuple[float, float]:
+    return float(config.range_m[0]), float(config.range_m[-1])
+
+
+def _wide(config: RadarConfig, scene: Scene) -> RadarConfig | None:
+    """The window from close by to the farthest floor of the room; None if it is no wider."""
+    free = scene.free_space
+    is_free = free.is_free if free.is_assumed is None else free.is_free | free.is_assumed
+    if not is_free.any():
+        return None
+    x, y = np.meshgrid(free.x_m, free.y_m)
+    floor_m = float(np.sqrt(x[is_free] ** 2 + y[is_free] ** 2 + scene.floor_z_m**2).max())
+    near, far = _window(config)
+    reach = min(floor_m + MARGIN_M, config.farthest_bin_m, FARTHEST_M)
+    if reach <= far + 0.05 and near <= NEAREST_M + 0.05:
+        return None
+    return with_range(config, min(near, NEAREST_M), max(reach, far))
+
+
+def _narrowed(config: RadarConfig, wide: RadarConfig, people: Sequence[Motion]) -> RadarConfig:
+    """The smallest window that keeps the usual one and all bodies."""
+    reach = np.concatenate([np.linalg.norm(person.pose.joints_m, axis=-1).ravel() for person in people])
+    (near, far), (least, most) = _window(config), _window(wide)
+    return with_range(
+        config,
+        max(min(near, float(reach.min()) - MARGIN_M), least),
+        min(max(far, float(reach.max()) + MARGIN_M), most),
+    )
+
+
+def furnished_room(request: ParsedRequest, room: Room) -> Room:
+    """The room with furniture in place of what the sentences name and it lacks, if the request asks for that.
+
+    Args:
+        request: The parsed request.
+        room: The room.
+    """
+    if request.missing != FURNISH:
+        return room
+    from mmweaver.scene.furnished import free_place
+
+    for plan in filter(None, (person.plan for person in request.people)):
+        for one in missing_things(plan, room.scene):
+            place = free_place(room.scene, one.kind, request.range_window_m[1], seed=request.seed, side=one.side)
+            if place is not None:  # else a place of the room stands in for it
+                room = room.with_furniture(place, seed=request.seed)
+    return room
