@@ -47,6 +47,7 @@ fuzz: $(STAMP)  ## damaged files for every reader, for SECONDS; docs/security.md
 
 COUNT ?= 100
 mutants: $(STAMP)  ## breaks COUNT sampled lines one at a time: what do the tests notice? results/mutants.json; an hour or two
+	$(BIN)/python -m tools.mutants.promises
 	$(BIN)/python -m tools.mutants --seed $(SEED) --count $(COUNT)
 
 bench: $(STAMP)

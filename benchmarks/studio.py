@@ -33,6 +33,24 @@ def cpu_seconds(pid: int) -> float:
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
+def browser_cpu_seconds() -> float:
+    """Processor time of Chromium: of every process below this one that is part of it."""
+    parents, chromium = {}, set()
+    for folder in Path("/proc").iterdir():
+        try:
+            if folder.name.isdigit():
+                fields = (folder / "stat").read_text(encoding="ascii", errors="replace").rsplit(")", 1)[1].split()
+                parents[int(folder.name)] = int(fields[1])
+                if b"chrom" in (folder / "cmdline").read_bytes().split(b"\0")[0]:
+                    chromium.add(int(folder.name))
+        except OSError:  # a process that has ended meanwhile
+            continue
+    own = {os.getpid()}
+    while grown := {pid for pid, parent in parents.items() if parent in own} - own:
+        own |= grown
+    return sum(cpu_seconds(pid) for pid in chromium & own)
+
+
 def post(address: str, path: str, session: str = "", body: object = None) -> bytes:
     """What a call of the page answers."""
     asked = urllib.request.Request(address + path, json.dumps(body or {}).encode(), {"x-session": session})
@@ -82,13 +100,25 @@ def of_page(address: str, pid: int) -> dict[str, float]:
         page.get_by_role("button", name="Live").click()
         page.wait_for_function("() => studio.live?.frames > 40", timeout=120_000)
         cpu, early = cpu_seconds(pid), page.evaluate("(gc(), performance.memory.usedJSHeapSize)")
-        frames = page.evaluate("studio.live.frames")
+        frames, drawn, begun = (
+            page.evaluate("studio.live.frames"),
+            page.evaluate("studio.player.scene.draws"),
+            time.perf_counter(),
+        )
+        in_browser = browser_cpu_seconds()
         page.wait_for_function(f"() => studio.live.frames > {LIVE_FRAMES}", timeout=300_000)
+        wall_s, browser_s, draws = (
+            time.perf_counter() - begun, browser_cpu_seconds() - in_browser, page.evaluate("studio.player.scene.draws") - drawn
+        )  # fmt: skip
+        served_s = cpu_seconds(pid) - cpu
         made_s = 0.1 * (page.evaluate("studio.live.frames") - frames)
         late = page.evaluate("(gc(), performance.memory.usedJSHeapSize)")
         found |= {
             "live_times_real_time_wall": page.evaluate("studio.live.times_real_time"),
-            "live_times_real_time_cpu": made_s / (cpu_seconds(pid) - cpu),
+            "live_times_real_time_cpu": made_s / served_s,
+            "live_browser_cpu_per_second": browser_s / wall_s,
+            "live_server_cpu_per_second": served_s / wall_s,
+            "live_pictures_per_second": draws / wall_s,
             "live_heap_growth_megabytes": (late - early) / 1e6,
         }  # fmt: skip
         chromium.close()

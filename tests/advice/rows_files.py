@@ -394,12 +394,6 @@ ROWS = (
         (instead("give a folder of mmweaver generate", "{rgb}", "{walk}"),),
     ),
     Row("where to write the signal of", "sample field.safetensors --finer 2,1,1", (add("--out", "finer.npz"),), _field),
-    Row(
-        "two ways to sample",
-        "sample field.safetensors --finer 2,1,1 --jitter 0.1 --out a.npz",
-        (drop("--finer"), drop("--jitter")),
-        _field,
-    ),
     Row("is no field; give a .safetensors", "sample room --finer 2,1,1 --out a.npz", (_of_the_field,), _field),
     Row("holds no field; give a file", "sample {weights} --finer 2,1,1 --out a.npz", (_of_the_field,), _field),
     Row(

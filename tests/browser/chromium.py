@@ -23,6 +23,9 @@ FLAGS = [
 ]
 
 
+READY, IDLE = "main[data-state=ready]", "main[data-busy=false]"  # of the page
+
+
 class Running(str):
     """The address of a studio in a process of its own."""
 

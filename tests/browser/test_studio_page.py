@@ -2,7 +2,6 @@
 
 import json
 import math
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,48 +11,10 @@ from PIL import Image
 
 from mmweaver.io.dca1000 import write_bin
 from tests import captures
-from tests.browser.chromium import FLAGS, Running, needs_browser, running_studio
+from tests.browser.chromium import IDLE, READY, Running
 from tests.scene.scanned_mesh.test_mesh_photo import Y_UP, furnished
 
 SAMPLE = Path(__file__).resolve().parents[2] / "src" / "mmweaver" / "sample"
-READY, IDLE = "main[data-state=ready]", "main[data-busy=false]"
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    path = needs_browser()
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=path, args=FLAGS)
-        yield chromium
-        chromium.close()
-
-
-@pytest.fixture(scope="module")
-def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
-    needs_browser()
-    with running_studio("--workers", "1", log=tmp_path_factory.mktemp("studio") / "log") as found:
-        yield found
-
-
-@pytest.fixture(scope="module")
-def visited(browser: Any, address: str) -> Iterator[tuple[Any, list[str], list[str]]]:
-    """The page after loading, all requests it made, and what it complained of."""
-    page = browser.new_page(viewport={"width": 1280, "height": 860}, bypass_csp=True, reduced_motion="reduce")
-    asked: list[str] = []
-    complaints: list[str] = []
-    page.on("request", lambda request: asked.append(request.url))
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.goto(address)
-    page.wait_for_selector(READY, timeout=120_000)
-    yield page, asked, complaints
-    page.close()
-
-
-@pytest.fixture
-def page(visited: tuple[Any, list[str], list[str]]) -> Any:
-    return visited[0]
 
 
 def ask(page: Any, text: str) -> str:

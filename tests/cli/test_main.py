@@ -156,7 +156,7 @@ sys.exit(main.main())
 @posix_only
 @pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP", "SIGINT"])
 def test_a_signal_that_ends_a_command_leaves_nothing_over(name: str, tmp_path: Path):
-    """docs/evidence/trust.md: on an error, Ctrl-C or SIGTERM the command removes its temporary files."""
+    """docs/security.md: on an error, Ctrl-C or SIGTERM the command removes its temporary files."""
     reset = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"  # ignored in the background
     words = [sys.executable, "-c", reset + STOPPED, str(tmp_path / "new" / "out")]
     process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

@@ -115,7 +115,7 @@ def bad(recording: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     ("words", "says"),
     [
         (["missing.bin", "--radar", "awr1843"], "missing.bin"),
-        (["cut.bin", "--radar", "awr1843"], "truncated"),
+        (["cut.bin", "--radar", "awr1843", "--strict"], "whole frame"),
         (["empty.bin", "--radar", "awr1843"], "empty"),
         (["whole.bin", "--radar", "nope"], "awr1843"),
         (["whole.bin", "--radar", "broken.json"], "broken.json"),

@@ -181,7 +181,7 @@ def archive_of(members: dict[str, bytes]) -> bytes:
 def _damaged_member(sound: dict[str, bytes], rng: random.Random) -> dict[str, bytes]:
     """One file damaged, most often a text."""
     texts = [name for name, data in sound.items() if data.isascii()]
-    name = rng.choice(texts if rng.random() < 0.8 else sorted(sound))
+    name = rng.choice(texts if texts and rng.random() < 0.8 else sorted(sound))
     if name.endswith(".json") and rng.random() < 0.7:
         return {name: m.json_bytes(m.mutated_json(json.loads(sound[name]), rng), rng)}
     if name in texts and rng.random() < 0.7:

@@ -8,7 +8,7 @@ import torch
 
 from mmweaver.core.boards import AWR1843
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
-from mmweaver.motion.micro_motion import STILL, MicroMotionSettings
+from mmweaver.motion.physiology import STILL, PhysiologySettings
 from mmweaver.propagation.adc_synthesis import AdcSynthesis
 from mmweaver.propagation.antenna import scatterer_gain, specular_gain
 from mmweaver.propagation.cube_rendering import CubeRenderer
@@ -94,7 +94,7 @@ def test_a_living_person_never_rests():
     """Who stands sways and breathes by millimetres a second: faint against the body, far above nothing."""
     simulator = Simulator(scene_of((floor(),)), AWR1843, IDEAL)
     moving_db = []
-    for motions in (MicroMotionSettings(), STILL):
+    for motions in (PhysiologySettings(), STILL):
         adc = simulator.run(standing_person((0.2, 2.0, -1.2)), num_frames=4, seed=0, motions=motions).adc.samples
         person = adc - simulator.room_adc
         moving = person - person.mean(axis=1, keepdims=True)
@@ -169,20 +169,51 @@ def error_db(got: np.ndarray, wanted: np.ndarray) -> float:
 
 
 def test_a_corner_has_its_double_bounce_once():
-    """Wall and floor at right angles: two single images and one corner image, straight through the corner."""
+    """Wall and floor at right angles: the wall's image and one straight through the corner.
+
+    Straight down to the floor a vertically polarised antenna sends nothing.
+    """
     paths = specular_paths(
         specular_reflectors((back_wall(y_m=2.5), floor(-1.2))), AWR1843.wavelength_m, AWR1843.centre_frequency_hz
     )
     images = sorted(tuple(np.round(path.shift_m, 6)) for path in paths)
-    assert images == [(0.0, 0.0, -2.4), (0.0, 5.0, -2.4), (0.0, 5.0, 0.0)]
+    assert images == [(0.0, 5.0, -2.4), (0.0, 5.0, 0.0)]
     corner = next(path for path in paths if len(path.corners_m) == 2)
     assert np.allclose(corner.corners_m, [0, 2.5, -1.2], atol=1e-6)
     way = np.array([0, 5.0, -2.4]) / np.hypot(5.0, 2.4)
-    expected = 1.0 + 0j
+    expected = (
+        -1.0 + 0j
+    )  # the field lies in the upright plane of incidence: TM at the wall, too, whose image is upright
     for mirror in specular_reflectors((back_wall(y_m=2.5), floor(-1.2))):
-        expected *= complex(mirror.coefficient(np.abs(way @ mirror.plane.normal), AWR1843.centre_frequency_hz))
+        cos, smooth = np.abs(way @ mirror.plane.normal), np.sqrt(1 - mirror.material.scattering**2)
+        at_hz = AWR1843.centre_frequency_hz
+        expected *= smooth * complex(reflection(mirror.material, cos, at_hz, polarisation="tm"))
     expected = expected.conjugate()
     assert corner.echoes.value(AWR1843.centre_frequency_hz) == pytest.approx(expected, rel=0.05)
+
+
+def test_a_corner_of_three_metal_faces_returns_the_field_as_it_came():
+    """Perfect mirrors turn E into -E + 2 (n E) n; three at right angles give E again, from any side."""
+    faces = (back_wall(y_m=2.5, material="metal"), side_wall(1.5, "metal"), floor(-1.2, "metal"))
+    paths = specular_paths(specular_reflectors(faces), AWR1843.wavelength_m, AWR1843.centre_frequency_hz, 1)
+    corner = next(path for path in paths if np.allclose(np.abs(path.shift_m), [3.0, 5.0, 2.4]))
+    smooth = (1 - MATERIALS["metal"].scattering ** 2) ** 1.5
+    assert corner.echoes.value(AWR1843.centre_frequency_hz) == pytest.approx(smooth, abs=0.02)
+
+
+def test_a_wave_that_meets_a_wall_from_below_is_partly_tm():
+    """Closed form at Brewster's angle of glass: the TM part vanishes, so only the part across the plane remains."""
+    frequency_hz, material = AWR1843.centre_frequency_hz, MATERIALS["glass"]
+    (wall,) = specular_reflectors((back_wall(y_m=2.5, material="glass"),))
+    rise = np.radians(60.0)
+    straight = np.array([0.0, np.cos(rise), np.sin(rise)])  # upright plane of incidence: TM alone
+    tm = wall.echoes(straight, frequency_hz, 1).coefficient[0]
+    te = wall.echoes(np.array([np.sin(rise), np.cos(rise), 0.0]), frequency_hz, 1).coefficient[0]  # level: TE alone
+    smooth = np.sqrt(1 - material.scattering**2)
+    for got, name in ((tm, "tm"), (te, "te")):
+        wanted = smooth * reflection(material, np.cos(rise), frequency_hz, polarisation=name)
+        assert abs(got) == pytest.approx(abs(complex(wanted)), rel=1e-6)
+    assert abs(tm) < 0.4 * abs(te)
 
 
 def test_ghost_appears_where_the_mirror_says():

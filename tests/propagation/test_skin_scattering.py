@@ -6,7 +6,7 @@ import pytest
 from mmweaver.core.boards import AWR1843
 from mmweaver.core.body_capsules import CAPSULES, part_of
 from mmweaver.core.ray_caster import RayCaster
-from mmweaver.motion.micro_motion import STILL
+from mmweaver.motion.physiology import STILL
 from mmweaver.propagation.body_model import ScatteringBody
 from mmweaver.propagation.body_paths import BodyPaths
 from mmweaver.propagation.ray_traced import Simulator

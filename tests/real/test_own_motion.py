@@ -10,10 +10,10 @@ from mmweaver.core.records import FreeSpace, Scene
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.mocap.clip import resampled_clip
 from mmweaver.motion.mocap.clip_placement import place_clip
+from mmweaver.motion.mocap.humanml3d_features import features_from_joints
 from mmweaver.motion.mocap.joint_arrays import CONTACTS, clips_of, joints_from_features
 from mmweaver.motion.mocap.read_motion import read_motion
 from studies.physics.empty_room_cube import empty_room
-from tests.motion.humanml3d_features import features_from_joints
 
 SAMPLE = Path("motion") / "humanml3d_sample"
 CMU = Path("motion") / "cmu" / "cmu_joints_m_120fps.npz"

@@ -10,6 +10,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.io.npz_files import write_points_npz
 from mmweaver.recognition.point_recordings import (
     PointRecording,
+    hole_frames,
     read_task_recording,
     read_task_recordings,
     samples_of,
@@ -67,6 +68,28 @@ def test_a_result_folder_is_a_recording_of_all_its_frames(tmp_path: Path):
 def test_where_a_log_counts_again_another_take_begins(tmp_path: Path):
     np.savez(tmp_path / "a.npz", frame=[4, 6, 2, 3, 1], pts=np.zeros((5, 6)))
     assert read_task_recording(tmp_path / "a.npz", SETTINGS).cloud.frame.tolist() == [0, 2, 102, 103, 203]
+
+
+def test_a_hole_in_the_frame_numbers_is_missing_frames_and_no_empty_room(tmp_path: Path):
+    settings = replace(SETTINGS, labels=("nobody", "walk"), empty_label="nobody", gap_frames=20)
+    frame = np.r_[np.arange(100), 2490 + np.arange(100)]
+    np.savez(tmp_path / "a.npz", frame=frame, pts=np.ones((200, 6)))
+    found = read_task_recording(tmp_path / "a.npz", settings)
+    assert (found.num_frames, len(found.missing), found.missing[0], found.missing[-1]) == (2590, 2390, 100, 2489)
+    assert [window.first_frame for window in windows_of(found, settings)] == [
+        *range(0, 100, 10),
+        *range(2490, 2590, 10),
+    ]
+    # a file that names its number of frames has all of them, and those without points are an empty room
+    np.savez(tmp_path / "b.npz", frame=frame, pts=np.ones((200, 6)), num_frames=2590)
+    assert len(windows_of(read_task_recording(tmp_path / "b.npz", settings), settings)) == 259
+
+
+def test_rests_of_some_seconds_are_not_missing():
+    assert len(hole_frames(np.array([0, 3, 30, 31, 80, 81, 82]), 10.0)) == 0
+    assert hole_frames(np.array([0, 3, 30, 140]), 10.0).tolist() == list(range(31, 140))
+    always = np.setdiff1d(np.arange(500), [200, *range(300, 315)])  # points in nearly every frame
+    assert hole_frames(always, 10.0).tolist() == list(range(300, 315))
 
 
 def test_a_longer_gap_begins_a_new_sample():

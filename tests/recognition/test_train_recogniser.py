@@ -105,7 +105,7 @@ def test_what_moves_in_the_empty_place_is_left_out_of_all_windows(task_file: Pat
     task_file.write_text(TASK.format(more='background = "place/rest/empty.npz"'))
     model = train_recogniser(task_file, tmp_path / "model", OPTIONS)
     again = load_recogniser(tmp_path / "model")
-    assert len(model.points.busy) == len(again.points.busy) == 9
+    assert len(model.points.background) == len(again.points.background) == 9
     assert again.points.radar == Quantisation.of(read_task(task_file))
     people = drawn_sequences(model.settings, 2, first=50)
     with_fan = [with_others(one, empty.cloud) for one in people]

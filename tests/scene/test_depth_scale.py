@@ -1,5 +1,6 @@
 """The unit of a depth picture, its kind and its byte order follow from the room that it shows."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +23,7 @@ from mmweaver.scene.depth_scale import (
 )
 from mmweaver.scene.photo.camera_file import d455_intrinsics, intrinsics_for, read_camera_file
 from mmweaver.scene.photo_files import sample_photo
+from mmweaver.scene.read_photo import read_photo
 
 CASES = Path(__file__).resolve().parents[3] / "shared" / "cases"
 
@@ -99,6 +101,34 @@ def test_bits_of_sun_rgbd_are_rotated_back(room: tuple[np.ndarray, CameraIntrins
     assert is_rotated(stored)
     assert not is_rotated(millimetres)
     assert np.array_equal(rotated_by_three(stored), millimetres)
+
+
+def test_a_photo_is_read_in_each_unit_and_kind(tmp_path: Path, room: tuple[np.ndarray, CameraIntrinsics]):
+    """Through `read_photo`: without a camera file's unit, in each of the units the room is the same."""
+    depth_m, camera = room
+    photo, _ = sample_photo()
+    rgb, lens = tmp_path / "rgb.png", tmp_path / "camera.json"
+    Image.fromarray(photo.rgb).save(rgb)
+    numbers = {name: getattr(camera, name) for name in ("fx", "fy", "cx", "cy", "width", "height")}
+    lens.write_text(json.dumps(numbers))
+    right = np.where(depth_m > 0, depth_m, np.nan)
+    x, y = normalized_coordinates(camera)
+    millimetres = np.rint(1000 * depth_m).astype(np.uint16)
+    sun = ((millimetres << 3) | (millimetres >> 13)).astype(np.uint16)
+    made = {
+        "mm": (millimetres, {}, "mm"),
+        "kitti": (np.rint(256 * depth_m), {}, "kitti"),
+        "tum": (np.rint(5000 * depth_m), {"depth_unit": "tum"}, ""),
+        "sun": (sun, {}, "sunrgbd"),
+        "ray": (np.rint(1000 * depth_m * np.sqrt(1 + x**2 + y**2)), {}, "ray"),
+    }
+    for name, (counts, how, word) in made.items():
+        Image.fromarray(counts.astype(np.uint16)).save(tmp_path / "depth.png")
+        found, notes = read_photo(rgb, tmp_path / "depth.png", lens, **how)
+        measured = np.isfinite(found.depth_m) & np.isfinite(right)
+        assert np.abs(found.depth_m - right)[measured].max() < 0.003, name
+        text = " ".join(notes)
+        assert (word in text) if word else ("--depth-unit" not in text), name
 
 
 def test_a_unit_is_a_name_or_a_number():

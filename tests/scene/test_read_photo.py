@@ -52,7 +52,8 @@ def test_a_good_photo(files: Files):
     assert photo.rgb.shape == (72, 96, 3)
     assert photo.depth_m[0, 0] == 2.5
     assert (photo.intrinsics.fx, photo.intrinsics.width) == (80.0, 96)
-    assert assumptions == ()
+    assert len(assumptions) == 1
+    assert "--depth-unit mm" in assumptions[0]  # how the unit was found is always reported
 
 
 @pytest.mark.parametrize("values", [DEPTH, DEPTH.astype(np.int32), DEPTH / np.float32(1000), DEPTH / 1000.0, DEPTH * 5])
@@ -118,7 +119,7 @@ def test_depth_that_lies_as_the_colours_did_is_turned_with_them(files: Files, or
     ("values", "message"),
     [
         (np.zeros((72, 96), np.uint16), "every depth value"),
-        (np.full((72, 96), 25000, np.uint16), "set depth_unit_m to 0.0001"),
+        (np.full((72, 96), 25000, np.uint16), "--depth-unit"),
         (np.full((72, 96), 120, np.uint8), "8 bits"),
         (np.where(np.arange(96) < 5, DEPTH, 0).astype(np.uint16), "5.2 %"),
         (np.full((70, 96), 2500, np.uint16), "aligned"),

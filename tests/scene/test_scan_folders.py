@@ -12,7 +12,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.pinhole import resized, rotated_clockwise
 from mmweaver.core.records import RgbdPhoto
 from mmweaver.scene.photo_files import sample_photo
-from mmweaver.scene.scan_folders import read_scan_photo, scan_kind
+from mmweaver.scene.scan_folders import FORMATS, read_scan_photo, scan_kind, scan_pose
 from mmweaver.weaver.front_door import Weaver
 
 SIZE = (320, 240)
@@ -101,6 +101,65 @@ def tum(folder: Path) -> None:
     rgb, depth_m, _ = lying(0)
     save(folder / "rgb" / "1305031102.175304.png", rgb)
     save(folder / "depth" / "1305031102.160407.png", depth_m, 0.0002)
+
+
+def seven_scenes(folder: Path) -> None:
+    rgb, depth_m, _ = lying(0)
+    save(folder / "frame-000000.color.png", rgb)
+    save(folder / "frame-000000.depth.png", np.where(depth_m > 0, depth_m, 65.535), 0.001)
+    (folder / "frame-000000.pose.txt").write_text("1 0 0 0.5\n0 1 0 0\n0 0 1 0\n0 0 0 1\n")
+
+
+def replica(folder: Path) -> None:
+    rgb, depth_m, (fx, fy, cx, cy) = lying(0)
+    save(folder / "results" / "frame000000.jpg", rgb)
+    save(folder / "results" / "depth000000.png", depth_m, 1 / 6553.5)
+    (folder / "traj.txt").write_text("1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n")
+    camera = {"w": SIZE[0], "h": SIZE[1], "fx": fx, "fy": fy, "cx": cx, "cy": cy, "scale": 6553.5}
+    (folder / "cam_params.json").write_text(json.dumps({"camera": camera}))
+
+
+def sun_rgbd(folder: Path) -> None:
+    rgb, depth_m, (fx, fy, cx, cy) = lying(0)
+    save(folder / "image" / "0000001.jpg", rgb)
+    millimetres = np.round(1000 * depth_m).astype(np.uint16)
+    save(folder / "depth_bfx" / "0000001.png", (millimetres << 3) | (millimetres >> 13))
+    (folder / "intrinsics.txt").write_text(f"{fx} 0 {cx}\n0 {fy} {cy}\n0 0 1\n")
+
+
+def icl_nuim(folder: Path) -> None:
+    rgb, depth_m, _ = lying(0)
+    save(folder / "rgb" / "0.png", rgb)
+    save(folder / "depth" / "0.png", depth_m, 0.0002)
+
+
+def redwood(folder: Path) -> None:
+    rgb, depth_m, _ = lying(0)
+    save(folder / "rgb" / "00000.jpg", rgb)
+    save(folder / "depth" / "00000.png", depth_m, 0.001)
+    (folder / "odometry.log").write_text("0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n")
+
+
+@pytest.mark.parametrize(
+    ("write", "kind", "has_pose"),
+    [
+        (seven_scenes, "7-Scenes", True),
+        (replica, "Replica", True),
+        (sun_rgbd, "SUN RGB-D", False),
+        (icl_nuim, "ICL-NUIM", False),
+        (redwood, "Redwood", True),
+        (tum, "TUM RGB-D", False),
+    ],
+)
+def test_folders_of_data_sets_have_their_own_units(
+    write: Callable[[Path], None], kind: str, has_pose: bool, tmp_path: Path
+):
+    write(tmp_path)
+    assert scan_kind(tmp_path) == kind
+    found = read_scan_photo(tmp_path)
+    assert_same_depth(found.photo, lying(0)[1])
+    picture = next(iter(sorted(tmp_path.glob(FORMATS[kind].pictures[0]))))
+    assert (scan_pose(tmp_path, kind, picture) is not None) == has_pose
 
 
 def assert_same_depth(found: RgbdPhoto, depth_m: np.ndarray) -> None:

@@ -43,7 +43,7 @@ def test_list_names_every_study_with_its_question(capsys: pytest.CaptureFixture[
     assert main(["list"]) == 0
     shown = capsys.readouterr().out
     assert "\nphysics:\n  mars " in shown
-    assert "train_paper" in shown
+    assert "paper_scores" in shown
 
 
 def test_bad_input_is_one_line(capsys: pytest.CaptureFixture[str]):

@@ -179,3 +179,34 @@ def test_a_lock_waits_for_another_process_and_ends_with_it(tmp_path: Path):
     with locked(tmp_path, wait_s=20.0), locked(tmp_path, wait_s=0.0):
         pass
     holder.wait()
+
+
+def test_a_full_disk_names_what_was_to_be_written(tmp_path: Path, recording: Path, monkeypatch: pytest.MonkeyPatch):
+    """Not the unfinished file, and not numpy's count of bytes."""
+    from mmweaver.core.output_checks import cannot_write
+
+    stage = staging_path(tmp_path / "walk")
+    inner = staging_path(stage / "adc_data.bin")
+    message = str(cannot_write(inner, OSError(28, os.strerror(28))))
+    assert message.startswith(f"cannot write {tmp_path / 'walk' / 'adc_data.bin'}: No space left on device; free some")
+
+
+def test_samples_that_do_not_fit_say_why(tmp_path: Path):
+    from mmweaver.core.boards import PRESETS
+    from mmweaver.io.dca1000 import write_bin
+    from tests.captures import counts
+
+    (tmp_path / "radar.json").write_text(PRESETS["awr1843"].to_json())
+
+    def write() -> int:
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, resource.RLIM_INFINITY))
+        try:
+            write_bin(tmp_path / "a.bin", counts(PRESETS["awr1843"], 1), counts_per_unit=1.0)
+        except InputError as error:
+            return int("File too large" in str(error) and "requested" not in str(error))
+        return 2
+
+    (ended,) = run_at_once([write])
+    assert ended.status == 1

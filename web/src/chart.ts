@@ -1,7 +1,7 @@
 // Axes, ticks, zoom and the shared cursor of every panel. What lies under the axes is painted once; cursor and marks lie on a canvas of their own.
 import { clamp, element, themeColour } from "./dom";
 
-const MARGIN = { left: 50, top: 22, right: 8, bottom: 32 };
+const MARGIN = { left: 50, top: 22, right: 8, bottom: 32 }; // at the usual size of letters, 14 px
 const FONT = 'system-ui, "DejaVu Sans", sans-serif';
 
 /** A place in what all panels show: range in metres, radial velocity in m/s, azimuth in radians, time in seconds, as far as known. */
@@ -81,9 +81,11 @@ export abstract class Chart {
     for (const [axis, value] of [[this.x, x], [this.y, y]] as const) if (axis.quantity) cursor[axis.quantity] = value / (axis.factor ?? 1);
     return cursor;
   }
+  /** Size of letters, to the usual one. */
+  protected scale = 1;
   protected box() {
-    const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
-    const box = { left: MARGIN.left, top: MARGIN.top, width: Math.max(width - MARGIN.left - MARGIN.right, 1), height: Math.max(height - MARGIN.top - MARGIN.bottom, 1) };
+    const width = this.canvas.clientWidth, height = this.canvas.clientHeight, { left, top, right, bottom } = MARGIN, k = this.scale;
+    const box = { left: k * left, top: k * top, width: Math.max(width - k * (left + right), 1), height: Math.max(height - k * (top + bottom), 1) };
     if (this.isFan) { // a metre is as long in both directions
       const scale = Math.min(box.width / (this.x.to - this.x.from), box.height / (this.y.to - this.y.from)), w = scale * (this.x.to - this.x.from), h = scale * (this.y.to - this.y.from);
       return { left: box.left + (box.width - w) / 2, top: box.top + (box.height - h) / 2, width: w, height: h };
@@ -128,25 +130,26 @@ export abstract class Chart {
     const g = this.sized(this.base);
     if (!g) return;
     this.isDirty = false;
+    this.scale = parseFloat(getComputedStyle(this.root).fontSize) / 14 || 1;
     this.drawOn(g);
   }
   /** Axes and content, on the page or for a picture of it. */
   drawOn(g: CanvasRenderingContext2D): void {
-    const box = this.box(), width = this.canvas.clientWidth, height = this.canvas.clientHeight, px = this.px, py = this.py;
+    const box = this.box(), width = this.canvas.clientWidth, height = this.canvas.clientHeight, px = this.px, py = this.py, k = this.scale;
     const ink = themeColour(this.canvas, "--ink") || "#222", faint = themeColour(this.canvas, "--faint") || "#555";
     g.imageSmoothingEnabled = false;
-    g.font = `600 12px ${FONT}`; g.fillStyle = ink; g.textAlign = "left";
-    g.fillText(fitted(g, this.title, width - 24), 12, 15);
+    g.font = `600 ${12 * k}px ${FONT}`; g.fillStyle = ink; g.textAlign = "left";
+    g.fillText(fitted(g, this.title, width - 24 * k), 12 * k, 15 * k);
     g.save(); g.beginPath(); g.rect(box.left, box.top, box.width, box.height); g.clip();
     this.paint(g, px, py);
     g.restore();
-    g.font = `11px ${FONT}`; g.fillStyle = faint; g.textAlign = "center";
-    for (const t of ticks(this.x.from, this.x.to, Math.max(2, box.width / 55))) { g.fillRect(px(t), box.top + box.height, 1, 3); g.fillText(tidy(t), clamp(px(t), 12, width - 12), box.top + box.height + 13); }
+    g.font = `${11 * k}px ${FONT}`; g.fillStyle = faint; g.textAlign = "center";
+    for (const t of ticks(this.x.from, this.x.to, Math.max(2, box.width / (55 * k)))) { g.fillRect(px(t), box.top + box.height, 1, 3); g.fillText(tidy(t), clamp(px(t), 12 * k, width - 12 * k), box.top + box.height + 13 * k); }
     g.textAlign = "right";
-    for (const t of ticks(this.y.from, this.y.to, Math.max(2, box.height / 28))) { g.fillRect(box.left - 3, py(t), 3, 1); g.fillText(tidy(t), box.left - 5, py(t) + 4); }
+    for (const t of ticks(this.y.from, this.y.to, Math.max(2, box.height / (28 * k)))) { g.fillRect(box.left - 3, py(t), 3, 1); g.fillText(tidy(t), box.left - 5, py(t) + 4 * k); }
     g.textAlign = "center";
-    g.fillText(this.x.label, box.left + box.width / 2, Math.min(box.top + box.height + 26, height - 4));
-    g.save(); g.translate(Math.max(12, box.left - 38), box.top + box.height / 2); g.rotate(-Math.PI / 2); g.fillText(this.y.label, 0, 0); g.restore();
+    g.fillText(this.x.label, box.left + box.width / 2, Math.min(box.top + box.height + 26 * k, height - 4 * k));
+    g.save(); g.translate(Math.max(12 * k, box.left - 38 * k), box.top + box.height / 2); g.rotate(-Math.PI / 2); g.fillText(this.y.label, 0, 0); g.restore();
   }
   protected drawOver(): void {
     const g = this.sized(this.canvas);
@@ -202,7 +205,7 @@ export class CurveChart extends Chart {
     const { x } = this.place(cursor), values = this.curves[0]?.values;
     if (x === undefined || !values) return "";
     const k = Math.floor(((x - this.span[0]) / (this.span[1] - this.span[0])) * values.length);
-    return this.curves.filter((one) => !one.dashed && k in one.values).map((one) => `${one.name} ${one.values[k].toFixed(0)}`).join(", ") + ` ${this.unit}`;
+    return this.curves.filter((one) => !one.dashed && k in one.values).map((one) => `${one.name} ${one.values[k].toFixed(0)}`).join(", ").replace(/-/g, "−") + ` ${this.unit}`;
   }
   protected paint(g: CanvasRenderingContext2D, px: (x: number) => number, py: (y: number) => number): void {
     const line = themeColour(this.canvas, "--line"), box = this.box();
@@ -212,8 +215,8 @@ export class CurveChart extends Chart {
       g.strokeStyle = g.fillStyle = colour; g.lineWidth = 1.4; g.setLineDash(dashed ? [3, 3] : []); g.beginPath();
       const wide = (this.span[1] - this.span[0]) / values.length;
       values.forEach((value, k) => g.lineTo(px(this.span[0] + (k + 0.5) * wide), py(value)));
-      g.stroke(); g.setLineDash([]); g.font = `11px ${FONT}`; g.textAlign = "right";
-      g.fillText(name, box.left + box.width - 6, box.top + 13 + 13 * n);
+      g.stroke(); g.setLineDash([]); g.font = `${11 * this.scale}px ${FONT}`; g.textAlign = "right";
+      g.fillText(name, box.left + box.width - 6, box.top + 13 * this.scale * (n + 1));
     });
   }
 }

@@ -26,4 +26,11 @@ export function warnings(sequence: Sequence): HTMLElement[] {
   if (sequence.header.frames_in_all > sequence.frames) said.push(`${sequence.frames} of ${sequence.header.frames_in_all} frames are shown`);
   return [...new Set<string>(said)].map((one) => element("li", { class: "warning" }, element("span", { class: "sign", "aria-hidden": "true" }, "⚠"), inPageWords(one)));
 }
-export const noiseText = (sequence: Sequence) => (sequence.db.unit === "dBm" ? `noise ${sequence.db.noise.toFixed(0)} dBm a cell` : "").replace("-", "−");
+export const noiseChip = (sequence: Sequence) => (sequence.db.unit === "dBm" ? [element("li", { class: "noise" }, `noise ${sequence.db.noise.toFixed(0)} dBm a cell`.replace("-", "−"))] : []);
+
+/** What tells two results apart: the sentences, or else radar, method, seed or board. */
+export function differences(a: Sequence, b: Sequence): [string, string] {
+  const of = ({ header: { meta, radar } }: Sequence) => [[meta.text ?? ""].flat().join(" | "), radar, meta.method ?? "recorded", `seed ${meta.seed ?? "none"}`, meta.board?.name ?? ""].map(String);
+  const [one, two] = [of(a), of(b)], told = one.map((value, k) => (value !== two[k] ? k : -1)).filter((k) => k >= 0), shown = told.length ? told : [0];
+  return [shown.map((k) => one[k]).join(", "), shown.map((k) => two[k]).join(", ")];
+}

@@ -3,7 +3,7 @@ import { LIVING_PALE, PEOPLE } from "./body";
 import { CurveChart, type Axis, type Chart, type Cursor, type Mark } from "./chart";
 import { colourTable, velocityColour } from "./colours";
 import { clamp, element } from "./dom";
-import { motionLine, noiseText, warnings } from "./facts";
+import { differences, motionLine, noiseChip, warnings } from "./facts";
 import { DIFFERENCE_DB, MapPanel, type Picture } from "./map_panel";
 import { inCell, legend, type CellSize, type Rays } from "./rays";
 import { SceneView, TOP_SPEED_MPS, type Layer } from "./scene_view";
@@ -15,7 +15,7 @@ const DEGREES = 180 / Math.PI;
 const MAPS = [
   { name: "range_doppler", title: "Range-Doppler", kind: "doppler" },
   { name: "range_azimuth", title: "Range-azimuth", kind: "azimuth" },
-  { name: "range_profile", title: "Range profile, strongest velocity", kind: "profile" },
+  { name: "range_profile", title: "Range profile", kind: "profile" },
   { name: "range_time", title: "Range over time, moving", kind: "range-time" },
   { name: "micro_doppler", title: "Micro-Doppler, moving", kind: "velocity-time" },
 ] as const;
@@ -127,22 +127,22 @@ export class Player {
 
   /** Shows a sequence; with `other` the two are compared on one time line and one scale. */
   show(sequence: Sequence, other: Sequence | null = null): void {
-    const key = (one: Sequence | null) => JSON.stringify(one && [one.header.range_m, one.header.velocity_mps, one.header.azimuth_rad, one.version ? 0 : one.durationS]), isBuilt = this.shown.key === key(sequence) + key(other) && this.panels.length;
+    const key = (one: Sequence | null) => JSON.stringify(one && [one.header.range_m, one.header.velocity_mps, one.header.azimuth_rad, one.spanS]), isBuilt = this.shown.key === key(sequence) + key(other) && this.panels.length;
     this.shown.key = key(sequence) + key(other);
     this.sequence = sequence; this.other = other; this.rays = null; this.raysAt = ""; if (!sequence.version) this.cell = null;
     this.frame = Math.min(this.frame, this.lead!.frames - 1); this.share = 0;
     this.scene.setSequence(sequence, other);
     this.root.classList.toggle("comparing", other !== null);
     if (!isBuilt) this.build();
-    this.facts.replaceChildren(...motionLine((other ?? sequence).header.meta), ...[sequence, ...(other ? [other] : [])].flatMap(warnings));
+    this.facts.replaceChildren(...motionLine((other ?? sequence).header.meta), ...[sequence, ...(other ? [other] : [])].flatMap(warnings), ...noiseChip(other ?? sequence));
     this.showNames();
     this.showRays();
     this.draw();
   }
   /** Who is A, who is B, or who acts, with colours. */
   private showNames(): void {
-    const told = (one: Sequence, shift: number, name: string) => element("span", {}, element("span", { class: "swatch", style: `background:${PEOPLE[shift]}` }), name + ([one.header.meta.text ?? ""].flat().join(" | ") || one.header.radar));
-    this.names.replaceChildren(...(this.other ? [told(this.sequence!, 0, "A: "), told(this.other, LIVING_PALE, "B: ")] : []));
+    const told = (shift: number, name: string) => element("span", {}, element("span", { class: "swatch", style: `background:${PEOPLE[shift]}` }), name), [a, b] = this.other ? differences(this.sequence!, this.other) : ["", ""];
+    this.names.replaceChildren(...(this.other ? [told(0, `A: ${a}`), told(LIVING_PALE, `B: ${b}`)] : []));
   }
 
   /** The longer sequence, in whose frames the time line counts. */
@@ -199,9 +199,9 @@ export class Player {
     const key = `${low.toFixed(1)} ${scale.high.toFixed(1)} ${scale.unit} ${this.other !== null}`;
     if (this.bar.dataset.key === key) return;
     this.bar.dataset.key = key;
-    const noise = this.sequence && !this.other ? noiseText(this.sequence) : "", minus = (value: number) => value.toFixed(0).replace("-", "−");
-    const one = (table: string, from: string, to: string, unit: string) => element("span", { class: "bar", title: noise }, element("span", {}, from), element("span", { class: "gradient", style: `background:${gradient(table)}` }), element("span", {}, `${to} ${unit}`));
-    this.bar.replaceChildren(one("inferno", minus(low), minus(scale.high), scale.unit), ...(this.other ? [one("coolwarm", `−${DIFFERENCE_DB}`, `+${DIFFERENCE_DB}`, "dB, B − A")] : []), ...(noise ? [element("span", { class: "noise" }, noise)] : []));
+    const minus = (value: number) => value.toFixed(0).replace("-", "−");
+    const one = (table: string, from: string, to: string, unit: string) => element("span", { class: "bar" }, element("span", {}, from), element("span", { class: "gradient", style: `background:${gradient(table)}` }), element("span", {}, `${to} ${unit}`));
+    this.bar.replaceChildren(one("inferno", minus(low), minus(scale.high), scale.unit), ...(this.other ? [one("coolwarm", `−${DIFFERENCE_DB}`, `+${DIFFERENCE_DB}`, "dB, B − A")] : []));
   }
   private drawProfile(chart: CurveChart, of: Sequence | null, add: number, scale: { low: number; high: number; unit: string }): void {
     const [near, far] = this.sequence!.header.range_m;
@@ -223,7 +223,7 @@ export class Player {
   }
 
   private build(): void {
-    const a = this.sequence!, b = this.other, endS = Math.max(a.durationS, b?.durationS ?? 0), scale = commonScale(a, b);
+    const a = this.sequence!, b = this.other, endS = Math.max(a.spanS, b?.spanS ?? 0), scale = commonScale(a, b);
     this.panels = []; this.maps.replaceChildren(); this.strips.replaceChildren(); this.time = null;
     for (const { name, title, kind } of MAPS) {
       if (!this.settings.value.maps.includes(name) && kind !== "range-time") continue;

@@ -377,7 +377,7 @@ function fieldOfView(sequence: Sequence, floorZ: number): THREE.Object3D {
     fan.push(...at(from, a), ...at(far, a), ...at(far, b), ...at(from, a), ...at(far, b), ...at(from, b));
   }
   const shape = new THREE.BufferGeometry(); shape.setAttribute("position", new THREE.BufferAttribute(new Float32Array(fan), 3));
-  view.add(new THREE.Mesh(shape, new THREE.MeshBasicMaterial({ color: "#00a7d6", transparent: true, opacity: 0.07, side: THREE.DoubleSide, depthWrite: false })));
+  view.add(new THREE.Mesh(shape, new THREE.MeshBasicMaterial({ color: "#00a7d6", transparent: true, opacity: 0.05, side: THREE.DoubleSide, depthWrite: false })));
   for (const r of [from, far]) view.add(line(arc(r, left, right, z), "#00a7d6"));
   for (const t of [left, right]) view.add(line([from * Math.sin(t), from * Math.cos(t), z, far * Math.sin(t), far * Math.cos(t), z], "#00a7d6"));
   const solid = (shape: THREE.BufferGeometry, colour: string, place: [number, number, number]) => { const mesh = new THREE.Mesh(shape, new THREE.MeshStandardMaterial({ color: colour, roughness: 0.6 })); mesh.position.set(...place); view.add(mesh); };

@@ -8,7 +8,7 @@ export class Sequence {
   readonly arrays: Record<string, Tensor>;
   /** First point of each frame, and the number of all: points are in the order of frames. */
   readonly pointStart: Int32Array;
-  constructor(packed: Packed, readonly version = 0) {
+  constructor(packed: Packed, readonly version = 0, private windowS = 0) {
     this.header = packed.header; this.arrays = packed.arrays;
     this.pointStart = new Int32Array(this.frames + 1);
     const frames = packed.arrays.point_frame?.data ?? [];
@@ -31,6 +31,8 @@ export class Sequence {
   /** Half a Doppler bin: what moves more slowly is static. */
   get slowestMps(): number { const [low, high] = this.header.velocity_mps; return (high - low) / this.arrays.range_doppler.shape[2] / 2; }
 
+  /** How long its time axis is: that of a stream does not grow with it. */
+  get spanS(): number { return Math.max(this.windowS, this.durationS); }
   get durationS(): number { return this.frames * this.periodS; }
 
   /** The frame nearest to a time, the first or last where it lies outside. */
@@ -116,7 +118,7 @@ export class Rolling {
       if (!FIXED.has(name)) shape[PER_PERSON.has(name) ? 1 : 0] = this.frames;
       arrays[name] = { data: own.data, shape, stride: PER_PERSON.has(name) ? this.most : undefined };
     }
-    return new Sequence({ header: { ...chunk.header, frames: this.frames, time_s: this.times }, arrays }, this.version);
+    return new Sequence({ header: { ...chunk.header, frames: this.frames, time_s: this.times }, arrays }, this.version, this.most * chunk.periodS);
   }
 }
 

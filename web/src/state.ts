@@ -13,7 +13,7 @@ export interface Ask { room: string; people: Person[]; radar: string; board: str
 export interface Way { label: string; change: Partial<Ask> & { at?: Place | null; path?: null; text?: string; landmark?: string; estimate?: string } }
 export interface Problem { code: string; reason: string; ways: Way[]; of: "making" | "live" | "opening" | "other" }
 export interface Shown { id: string; of: "generated" | "recording" | "stream"; ask: Ask | null; name: string; radar: string; facts: string }
-export interface LiveFacts { frames: number; times: number; text: string; refused: string; label: { label: string; share: number; is_outside: boolean } | null }
+export interface LiveFacts { frames: number; times: number; text: string; refused: string; ways: Way[]; label: { label: string; share: number; is_outside: boolean } | null }
 export type Phase = "starting" | "idle" | "making" | "opening" | "live";
 export interface State {
   phase: Phase; job: number; ask: Ask; room: string; // whose room the scene shows, "" for none
@@ -112,7 +112,7 @@ export function reduce(state: State, action: Action): Step {
     case "opened": return [{ ...state, phase: "idle", shown: action.shown, problem: null, room: action.hasRoom || state.kept ? state.room : "" }, []];
     case "chunk": {
       const shown: Shown = { id: "", of: "stream", ask: { ...state.ask, people: [{ ...state.ask.people[0], text: action.live.text }] }, name: action.live.text, radar: action.radar, facts: "" };
-      const problem: Problem | null = action.live.refused ? { code: "refused", reason: action.live.refused, of: "live", ways: [] } : state.problem; // stays until the next sentence
+      const problem: Problem | null = action.live.refused ? { code: "refused", reason: action.live.refused, of: "live", ways: action.live.ways } : state.problem; // stays until the next sentence
       return [{ ...state, live: action.live, shown, problem }, []];
     }
     case "failed": return [{ ...state, phase: "idle", live: null, problem: action.problem }, ends(state)];

@@ -32,7 +32,7 @@ export const PROBLEMS: Record<string, string> = {
 };
 export const WAYS: Record<string, string> = { remove_others: "keep the first person only", free_place: "start anywhere free" };
 const OPTIONS: [RegExp, string][] = [
-  [/\(?or without it --radar [^;)]*\)?/g, ""], [/:? ?(?:or )?try --(?:range|radar|path|at|seconds|frames)\b[^;)]*/g, ""], [/;? ?(?:or )?see [`']?mmweaver motions[`']?/g, ""], [/[`']?mmweaver motions[`']?( lists [^;.]*)?/g, "the list of the sentence box"],
+  [/;[^;]*--(?:landmark|classes)\b[^;]*/g, ""], [/; did you mean '.*?'\?/g, ";"], [/, listed by [`']?mmweaver motions[`']?/g, ""], [/\(?or without it --radar [^;)]*\)?/g, ""], [/:? ?(?:or )?try --(?:range|radar|path|at|seconds|frames)\b[^;)]*/g, ""], [/;? ?(?:or )?see [`']?mmweaver motions[`']?/g, ""], [/[`']?mmweaver motions[`']?( lists [^;.]*)?/g, "the list of the sentence box"],
   [/--radar/g, "radar"], [/--range/g, "range window"], [/--path/g, "the path"], [/--at/g, "the start"], [/--seconds/g, "the length"], [/--([a-z-]+)/g, "$1"], [/(?:\/[\w.+-]+){2,}\/([\w.+-]+)/g, "$1"],
 ];
 /** A reason of the server without options of the command line and paths of its machine. */

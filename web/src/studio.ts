@@ -160,7 +160,7 @@ export class Studio {
   private showChunk(job: number, socket: WebSocket): void {
     const chunk = this.waiting[0];
     if (!chunk || this.socket !== socket) return;
-    const sequence = this.rolling.push(chunk), live: LiveFacts = { ...chunk.header.live, times: chunk.header.live.times_real_time }, first = sequence.frames - chunk.frames;
+    const sequence = this.rolling.push(chunk), live: LiveFacts = { ...chunk.header.live, ways: nearest(chunk.header.live.refused ?? ""), times: chunk.header.live.times_real_time }, first = sequence.frames - chunk.frames;
     this.player.pause(); this.player.frame = first;
     this.dispatch({ type: "chunk", job, live, radar: sequence.header.radar });
     this.sequences.set(this.state.shown!, sequence); this.show();
@@ -209,6 +209,7 @@ export class Studio {
   follow({ change }: Pick<Way, "change">): void {
     if (change.estimate) { void this.take(this.api.json(`api/depth/${encodeURIComponent(change.estimate)}`, { method: "POST" })); return; }
     if (change.landmark) { this.dispatch({ type: "mark", kind: change.landmark }); return; }
+    if (change.text) { this.dispatch({ type: "type", person: 0, text: change.text }); this.dispatch({ type: "go" }); return; }
     const { at, path, text, estimate: _, landmark: __, ...more } = change, people = more.people ?? this.state.ask.people.map((one, i) => (i ? one : { ...one, ...(at !== undefined ? { at, path: null } : {}), ...(path === null ? { path: null } : {}), ...(text ? { text } : {}) }));
     const wasLive = this.state.problem?.code === "live_one_person";
     this.dispatch({ type: "edit", change: { ...more, people } });
@@ -310,10 +311,12 @@ function address(ask: Ask): string {
   return pairs.toString();
 }
 function problemOf(error: unknown, of: Problem["of"]): Problem {
-  if (error instanceof Refused) return { code: error.code, reason: error.message, ways: error.waysOn as Way[], of };
+  if (error instanceof Refused) return { code: error.code, reason: error.message, ways: [...(error.waysOn as Way[]), ...nearest(error.message)], of };
   console.error(error);
   return { code: "input", reason: (error as Error).message, ways: [], of };
 }
+/** The known sentence that the server found nearest, as a button. */
+const nearest = (reason: string): Way[] => [...reason.matchAll(/did you mean '(.+?)'\?/g)].map(([, text]) => ({ label: `“${text}”`, change: { text } }));
 /** The corners of a drawn line: everything between them lies within 12 cm of it (Douglas and Peucker). */
 function corners(line: Place[]): Place[] {
   const [[ax, ay], [bx, by]] = [line[0], line.at(-1)!], length = Math.hypot(bx - ax, by - ay);

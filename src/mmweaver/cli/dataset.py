@@ -160,10 +160,10 @@ def _run_rooms(asked: Options) -> int:
     if asked.dry_run:
         return asked.report(asdict(cost), cost.summary(workers))
     check_packages(asked.ray_address)
-    if not (asked.quiet or asked.json):
-        print(cost.summary(workers), file=sys.stderr)
     check_output_folder(out, overwrite=True, files=[PLAN_FILE])
     check_for_space(cost, out)
+    if not (asked.quiet or asked.json):
+        print(cost.summary(workers), file=sys.stderr)
     total = len(plan.kinds) * plan.num_layouts
     try:
         with tqdm(total=total, unit="room", disable=asked.quiet or None) as bar:

@@ -2,7 +2,7 @@
 
 from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from mmweaver.cli.arguments import REQUEST_FILE, request_toml
 from mmweaver.cli.generate_inputs import DEFAULT_RADAR, radar_of, read_background, room_of, weaver_of
@@ -62,9 +62,21 @@ class RoomInput:
     demo: bool = option(f"the bundled sample room (and --out {DEMO_OUT})", default=False, group="input")
     rgb: Path | None = option("colour picture of the room", "PNG")
     depth: Source | None = option(
-        "its depth: 16-bit PNG (mm, or camera.json's unit), .npy or float TIFF in metres; or a metric depth model that"
+        "its depth: 16-bit PNG, .npy or float TIFF in metres; or a metric depth model that"
         " estimates it: auto (downloaded once), a folder or a Hub name",
         "FILE|auto|MODEL",
+    )
+    depth_unit: str | None = option(
+        "unit of a depth picture of integers: mm, cm, tum (5000 a metre, also ICL-NUIM), replica (6553.5), kitti (256,"
+        " also VOID), 4000, 10000, sunrgbd, or the metres in one count (default: camera.json's depth_unit_m, else"
+        " estimated from the room)",
+        "NAME|METRES",
+        rare=True,
+    )
+    depth_kind: Literal["z", "ray", "disparity"] | None = option(
+        "what the depth picture holds: depth along the optical axis, distance along the ray, or a Kinect's disparities"
+        " (default: z, or ray where only then surfaces are flat)",
+        rare=True,
     )
     camera: Path | None = option("fx, fy, cx, cy in pixels (default: a RealSense D455's)", "JSON")
     room: Path | None = option(
@@ -132,10 +144,12 @@ class RoomInput:
             assert self.rgb is not None
             if self.depth is not None:
                 how[_picture_or("depth_model", "depth", self.depth)] = self.depth
+            how |= {"depth_unit": self.depth_unit, "depth_kind": self.depth_kind}
             return weaver.read_room(self.rgb, camera=self.camera, **how)
         mesh = read_settings(self.mesh_set, _MESH_SETTINGS, "mesh-set")
         how |= {"look_deg" if name == "look" else name: value for name, value in mesh.items()}
         how |= {"photo": self.photo, "rgb": self.rgb, "extra_views": _photos(self.extra_views)}
+        how |= {"depth_unit": self.depth_unit, "depth_kind": self.depth_kind}
         return weaver.open_room(self.room, **{name: value for name, value in how.items() if value is not None})
 
     def check_room(self) -> None:

@@ -68,7 +68,8 @@ class RadarSettings(General):
 
     radar_set: list[Setting] | None = option(
         "what the radar's file leaves open: subframe=N of a .cfg or mmWave Studio file, antennas=NAME|JSON (isk, boost,"
-        " boost1642, aop, ods, evm2944, or a JSON with tx and rx in half wavelengths), lanes=2|4 of a DCA1000's .bin",
+        " boost1642, aop, ods, evm2944, or a JSON with tx and rx in half wavelengths), lanes=2|4 of a DCA1000's .bin,"
+        " pattern=FILE.csv of one antenna (azimuth, elevation, dB)",
         "KEY=VALUE",
     )
 
@@ -123,8 +124,8 @@ class Samples(RadarChoice, Layout):
 
     layout: str | None = option(
         "what a .npy holds: its axes in their order, such as frame,loop,tx,rx,sample, or whose it is: hupr (a frame or"
-        " a folder of them), mmmesh, rf_genesis, cubelearn",
-        "AXES|NAME",
+        " a folder of them), mmmesh, rf_genesis, cubelearn; or a mapping file that says it of a .mat or HDF5 file",
+        "AXES|NAME|FILE.toml",
         group="raw samples",
     )
 

@@ -26,9 +26,10 @@ class Options(Samples, Ranges, PointChoice, Written):
     GROUPS: ClassVar[dict[str, str]] = {"points": "output"}
 
     file: Path | None = option(
-        "adc_data.bin of a DCA1000, its packets as .pcap or .pcapng, raw ADC samples as .npy, radar.npz, a HuPR,"
-        " mmMesh, RF-Genesis or CubeLearn array, or a capture folder of mmwave-capture-std (radar.cfg, dca.pcap), which"
-        " brings its own radar",
+        "adc_data.bin of a DCA1000 or its parts X_Raw_0.bin, its packets as .pcap or .pcapng, raw ADC samples as .npy,"
+        " .mat or HDF5, radar.npz, a HuPR, mmMesh, RF-Genesis or CubeLearn array, or a folder that brings its radar: of"
+        " a DCA1000 capture with its .cfg or mmWave Studio files, of mmwave-capture-std (radar.cfg, dca.pcap), of"
+        " Infineon's Radar SDK (config.json, radar.npy)",
         "FILE|DIR",
         positional=True,
     )
@@ -39,6 +40,10 @@ class Options(Samples, Ranges, PointChoice, Written):
     remove_static: Literal["auto", "mean_chirp", "mean_frame"] | None = option(
         "remove static clutter from the cube and its points: the mean over each frame's chirps, or over all frames"
         " (auto: over frames where a frame has fewer than four loops)"
+    )
+    strict: bool = option(
+        "refuse a recording that has lost samples, or that does not agree with its radar, instead of warning",
+        default=False,
     )
     no_analysis: bool = option("do not look for slow movement, breathing, micro-Doppler and people", default=False)
     no_pictures: bool = option("leave out all pictures", default=False)
@@ -72,6 +77,7 @@ def run(asked: Options) -> int:
             static_removal=asked.remove_static or "none",
             board=asked.board,
             analyse=not asked.no_analysis,
+            strict=asked.strict,
             stages=Stages(bar),
             **asked.reading(),
         )

@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mmweaver.recognition.guard_report import removed_lines
+
 if TYPE_CHECKING:
     from mmweaver.recognition.recogniser import Recogniser
 
@@ -28,7 +30,8 @@ def training_lines(model: "Recogniser", out: Path) -> list[str]:
         done = meta["self_training"]
         why = "" if done["used"] else f", without self-training: {done['why']}"
         text.append(f"adapted to {meta['unlabelled_windows']} unlabelled windows{why}")
-    return text + contradiction_lines(meta.get("contradictions", [])) + [f"  {one}" for one in meta.get("left_out", [])]
+    text += contradiction_lines(meta.get("contradictions", [])) + [f"  {one}" for one in meta.get("left_out", [])]
+    return text + [f"  {one}" for one in removed_lines(meta.get("removed", []))]
 
 
 def confused_lines(labels: Sequence[str], confusion: list[list[int]]) -> list[str]:
@@ -65,6 +68,9 @@ def score_lines(scores: dict[str, Any]) -> list[str]:
         text.append(f"  moving points per frame: {count['recorded']:g} recorded, {count['generated']:g} generated")
     text += [f"  {line}" for line in scores["hardly_distinct"]] + contradiction_lines(scores["contradictions"])
     text += [f"  {one}; name `background` or `unlabelled`, so that run does so, too" for one in scores["left_out"]]
+    text += [f"  {one}" for one in removed_lines(scores["removed"])]
+    if scores.get("pictures"):
+        text.append(f"  {len(scores['pictures'])} pictures of what guards removed")
     return text + ([f"  warning: {scores['warning']}"] if scores["warning"] else [])
 
 

@@ -13,7 +13,6 @@ EXAMPLES = """examples:
   mmweaver dataset set/ --room . --activities activities.toml
   mmweaver recognise train TASK.toml --sequences 8 --out model/
   mmweaver sample walk.safetensors --finer 2,2,1 --out finer.npz      # a field of mmweaver fit, or a .mmw file
-  mmweaver sample walk.safetensors --jitter 0.25 --seed 1 --out moved.npz
 """
 PICTURE, RADAR, RECORDING = "rgb.png", "profile.cfg", "empty.bin"
 RECORDED_S, SEED, BOARD = 3.0, 0, "typical:1"
@@ -25,7 +24,7 @@ class Options(Written):
     """Writes the bundled room (rgb.png, depth.png, camera.json), a simulated recording of it with nobody in it
     (empty.bin) and its radar (profile.cfg), activities for a data set (activities.toml) and for a recogniser
     (TASK.toml). README.txt says what each file is. The files are always the same. Given a field of mmweaver fit or a
-    .mmw file instead of a folder, writes its signal at finer coordinates, or at random ones near its cells.
+    .mmw file instead of a folder, writes its signal, at finer coordinates where asked for.
     """
 
     place: Path = option(
@@ -36,15 +35,13 @@ class Options(Written):
     finer: tuple[float, float, float] | None = option(
         "how many times finer along range, Doppler and antennas (default 1,1,1)", "R,D,A"
     )
-    jitter: float | None = option("sample at random within so many cells of each cell, below 1", "CELLS")
-    seed: int = option("seed of --jitter", "N", default=0)
 
 
 def run(asked: Options) -> int:
     """Writes all files or none. Raises InputError."""
     if asked.place.suffix.lower() in FIELDS or asked.place.is_file():
         return _sample_field(asked)
-    if asked.out or asked.finer or asked.jitter is not None:
+    if asked.out or asked.finer:
         raise InputError(f"{asked.place} is no field; give a .safetensors file of mmweaver fit, or a .mmw file")
     from mmweaver.core.output_checks import check_output_folder
     from mmweaver.scene.photo_files import SAMPLE_FOLDER
@@ -65,12 +62,10 @@ def _sample_field(asked: Options) -> int:
 
     if asked.out is None:
         raise InputError(f"where to write the signal of {asked.place}? give --out FILE.npz")
-    if asked.finer and asked.jitter is not None:
-        raise InputError("--finer and --jitter are two ways to sample; leave one of them out")
     radar = asked.out.with_name("radar.json")
     check_output_file(asked.out, overwrite=asked.overwrite, inputs=[asked.place])
     field = load(asked.place)
-    cube = field.on_grid(*(asked.finer or ())) if asked.jitter is None else field.jitter(asked.jitter, asked.seed)
+    cube = field.on_grid(*(asked.finer or ()))
     has_radar = cube.grid.shape == field.grid.shape and not radar.exists()
     with atomic_file(asked.out) as partial:
         write_radar_npz(partial, cube)

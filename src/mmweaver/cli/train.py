@@ -21,7 +21,7 @@ RUN_FILES = ("weights.safetensors", "best.safetensors", "checkpoint.pt", "log.js
 # options of some recipes; fine-tuning is recipe weaver on recordings
 USES = {
     "weaver": "data start encoder",
-    "hypernetwork": "data start target features",
+    "hypernetwork": "data start target",
     "activity": "data start",
     "pose": "task sequences",
     "fine-tuning": "recordings start rgb depth camera",
@@ -66,11 +66,6 @@ class Options(Printed):
     target: Literal["signal", "power"] | None = option(
         "recipe hypernetwork: complex signals, as the paper has it, or fields of power (default power)",
         group="the paper's hypernetwork",
-    )
-    features: Path | None = option(
-        "target signal: weights of recipe activity, whose features the perceptual loss compares (default: an untrained"
-        " network's)",
-        "FILE",
     )
     recordings: Any = option(
         "folders of mmweaver process or generate (radar.npz), or of mmwave-capture-std; with pose.npz where the joints"
@@ -205,8 +200,6 @@ def _train_hypernetwork(asked: Options, place: "ComputeDevice", is_quiet: bool) 
     )
 
     target, start = asked.target or "power", None
-    if asked.features is not None and target != "signal":
-        raise InputError("--features are of --target signal; leave them out")
     if asked.start is not None:
         weights = find_weights(asked.start)
         network, card = load_hypernetwork(weights)
@@ -215,7 +208,7 @@ def _train_hypernetwork(asked: Options, place: "ComputeDevice", is_quiet: bool) 
         start = network.state_dict()
     recipe = HypernetworkRecipe.for_target(target, **asked.settings)
     with _listening(asked, place, recipe.steps, is_quiet) as how:
-        trainer = train_hypernetwork(asked.data, asked.out, recipe, features=asked.features, start=start, **how)
+        trainer = train_hypernetwork(asked.data, asked.out, recipe, start=start, **how)
     file = write_hypernetwork_weights(asked.out, asked.data, trainer) if place.is_first else None
     return {**_summary(file, trainer), "target": target, "validation": trainer.best.figures}
 

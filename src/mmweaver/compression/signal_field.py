@@ -80,7 +80,7 @@ class SignalField(ABC):
         grid = self.grid if grid is None else grid
         return RadarCube(values=self.values_on(grid), grid=grid, config=self.config, scale=self.scale)
 
-    def on_grid(self, n_r: float = 1.0, n_d: float = 1.0, n_a: float = 1.0) -> RadarCube:
+    def on_grid(self, n_r: float | int = 1, n_d: float | int = 1, n_a: float | int = 1) -> RadarCube:
         """The field sampled n_r, n_d, n_a times finer: super-resolution, of N_new = n_r n_d n_a N_orig samples.
 
         Args:
@@ -123,7 +123,7 @@ class SignalField(ABC):
         raise InputError(f"a {type(self).__name__} is a file already; copy it")
 
 
-def finer_grid(grid: CubeGrid, *, n_r: float = 1.0, n_d: float = 1.0, n_a: float = 1.0) -> CubeGrid:
+def finer_grid(grid: CubeGrid, *, n_r: float | int = 1, n_d: float | int = 1, n_a: float | int = 1) -> CubeGrid:
     """The grid over the same extent, in steps n times smaller.
 
     Range and Doppler: n cells for each original one, as a radar of n times the bandwidth or loops has (so the last
@@ -234,7 +234,7 @@ def antenna_coordinate(native_m: AntennaPositions, wanted_m: Places, wavelength_
     return number
 
 
-def _refined(values: Axis, factor: float) -> Axis:
+def _refined(values: Axis, factor: float | int) -> Axis:
     num = int(len(values) * factor + 1e-9)
     step = values[1] - values[0] if len(values) > 1 else 0.0
     return values[0] + np.arange(num) * (step / factor)

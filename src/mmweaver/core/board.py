@@ -94,6 +94,9 @@ LIMITS = {
     "first_chirp_phase_mrad": 3200.0,
     "drift_ppm": 100.0,
     "noise_figure_db": 100.0,
+    "iq_gain_db": 20.0,
+    "iq_phase_deg": 90.0,
+    "phase_noise_dbc_per_hz": 200.0,
     "element_spacing_m": 1.0,
     "cfar_threshold": 65535.0,
 }
@@ -137,6 +140,9 @@ class Board:
     drift_ppm: float = 0.0  # relative carrier frequency error, rms over time
     gain_db: float = 0.0  # echo gain relative to the link budget of the radar
     noise_figure_db: float | None = None  # None keeps the radar's
+    iq_gain_db: float = 0.0  # gain of Q over I of complex samples
+    iq_phase_deg: float = 0.0  # by which Q is more than 90 degrees behind I
+    phase_noise_dbc_per_hz: float | None = None  # at 1 MHz; correlated over range, as it is common to all echoes
     element_spacing_m: float | None = None  # true spacing of antennas half a wavelength apart; None keeps the radar's
     cfar_threshold: float | None = None  # range CFAR of TI's demo, in its counts; None keeps the settings'
 

@@ -65,6 +65,7 @@ def ti_board(name: str, board: AntennaTable, *, spaced_at_hz: float | None = Non
         "tx_order": tuple(range(len(board.tx_halfwaves))),
         "frequency_limits_hz": BAND_77_HZ,
         "rx_inverted": board.rx_inverted,
+        **dict(board.electrical),
         **chirp,
     }
     sampled_s = values["num_samples"] / values["sample_rate_hz"]

@@ -2,12 +2,13 @@
 
 import errno
 import os
+import re
 import stat
 from collections.abc import Iterable
 from pathlib import Path
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.staging import finish_moving, is_staged, remove, staging_path, sweep
+from mmweaver.core.staging import STAGED, finish_moving, is_staged, remove, staging_path, sweep
 
 MAX_NAME_BYTES = 255  # if the file system does not report a limit
 ADVICE = {
@@ -217,6 +218,11 @@ def _check_place(folder: Path, out: Path) -> None:
 
 
 def _short(path: Path) -> str:
-    """Abbreviates a long path for a one-line message."""
-    text = str(path)
+    """Abbreviates a long path for a one-line message; an unfinished file has its final name."""
+    text = str(Path(*(STAGED.sub(_final_name, part) for part in Path(path).parts)))
     return text if len(text) <= 200 else f"{text[:90]} ... {text[-90:]}"
+
+
+def _final_name(staged: re.Match[str]) -> str:
+    name = staged[0][1:].partition(".mmweaver-")[0]
+    return name + (staged[4] or "")

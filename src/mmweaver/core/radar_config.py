@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from mmweaver.core.antenna_pattern import pattern_grid
 from mmweaver.core.constants import BOLTZMANN_J_PER_K, NOISE_TEMPERATURE_K, SPEED_OF_LIGHT_MPS
 from mmweaver.core.errors import InputError
 from mmweaver.core.record_values import record_fields
@@ -29,6 +30,7 @@ RARE_FIELDS = (
     "lvds_iq_order",
     "rx_channels",
     "rx_inverted",
+    "antenna_pattern",
     "frame_words_before",
     "frame_words_after",
 )
@@ -72,6 +74,8 @@ class RadarConfig:
     rx_gain_db: float = 30.0
     azimuth_beamwidth_deg: float = 56.0
     elevation_beamwidth_deg: float = 28.0
+    # rows of azimuth and elevation in degrees and gain in dB, a grid or two cuts; () = falls with the beamwidths
+    antenna_pattern: tuple[tuple[float, float, float], ...] = ()
     adc_full_scale_v: float = 0.5
     frequency_limits_hz: tuple[float, float] = (57.0e9, 81.5e9)
     loop_gap_s: float = 0.0  # pause between the last chirp of a loop and the next loop
@@ -403,6 +407,11 @@ def _array_problems(config: "RadarConfig") -> Iterator[str]:
         yield f"rx_channels {config.rx_channels} must name each of its {config.num_rx} receivers once"
     if not set(config.rx_inverted) <= set(range(config.num_rx)):
         yield f"rx_inverted {config.rx_inverted} names receivers that it does not have"
+    if config.antenna_pattern:
+        try:
+            pattern_grid(config.antenna_pattern)
+        except ValueError as error:
+            yield str(error)
     if min(config.frame_words_before, config.frame_words_after) < 0:
         yield "words of a frame cannot be negative"
 

@@ -31,6 +31,7 @@ from mmweaver.core.shapes import (
     Vec3,
     Vertices,
 )
+from mmweaver.core.targets import Interferer, Reflector, Thing
 
 
 # Radar --------------------------------------------------------------------------------------------------------------
@@ -178,6 +179,35 @@ class PointCloud(ShownByFacts):
 
 
 # Motion -------------------------------------------------------------------------------------------------------------
+@dataclass(frozen=True, kw_only=True)
+class Breathing:
+    """What a sentence asks of a person's breathing; the rest is sampled (`motion.physiology`)."""
+
+    per_minute: float | None = None
+    held_s: tuple[tuple[float, float], ...] = ()  # intervals in which the breath is held
+
+
+@dataclass(frozen=True, kw_only=True)
+class VitalTruth:
+    """Ground truth of one person's vital signs over the frames of a signal.
+
+    Attributes:
+        breathing_hz: Mean rate outside held breaths; nan if the breath is held throughout.
+        heart_hz: Mean heart rate.
+        chest_m: Outward displacement of the chest's front (frame,) in metres, breathing and heartbeat.
+        belly_m: Outward displacement of the belly (frame,) in metres.
+        beat_s: Times of the heartbeats within the signal, (beat,).
+        held_s: Intervals in which the breath is held, (hold, 2).
+    """
+
+    breathing_hz: float
+    heart_hz: float
+    chest_m: np.ndarray
+    belly_m: np.ndarray
+    beat_s: np.ndarray
+    held_s: np.ndarray
+
+
 @dataclass(frozen=True, kw_only=True, repr=False)
 class PoseSequence(ShownByFacts):
     """Joints of one person over time in the radar's frame, in SMPL order (`core.skeleton`).
@@ -191,6 +221,8 @@ class PoseSequence(ShownByFacts):
     height_m: float
     subject: int = 0  # identifies the body: surface points and speckle
     girth: float = 1.0  # thickness of trunk and limbs relative to the average body of this height
+    breathing: Breathing = Breathing()
+    vitals: VitalTruth | None = None  # of a result, whose joints include sway and tremor
 
     def facts(self) -> dict[str, str]:
         """Times, joints and body."""
@@ -367,6 +399,9 @@ class Scene(ShownByFacts):
     assumptions: tuple[str, ...]  # sentences for meta.json
     landmarks: tuple[Landmark, ...] = ()
     radar_pose: RadarPose = AT_CAMERA  # pose of the radar that defines the frame; the photo is always the camera's
+    reflectors: tuple[Reflector, ...] = ()  # in the camera's level frame, as things
+    things: tuple[Thing, ...] = ()
+    interferers: tuple[Interferer, ...] = ()
 
     def facts(self) -> dict[str, str]:
         """Sizes, planes, seats and landmarks."""

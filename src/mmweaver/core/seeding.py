@@ -1,4 +1,4 @@
-"""Named random streams: one independent stream per purpose, all derived from one seed.
+"""Named random streams, one per purpose, and counters for plans of millions of sequences, all derived from one seed.
 
 Torch's default dtype during computation, independent of what the caller has set for the process.
 """
@@ -42,3 +42,33 @@ def stream(seed: int, *purpose: str | int) -> np.random.Generator:
     """
     key = hashlib.sha256(repr((int(seed), *purpose)).encode()).digest()
     return np.random.Generator(np.random.SFC64(np.frombuffer(key, np.uint32).tolist()))
+
+
+def hashed_words(*purpose: str | int) -> np.ndarray:
+    """Four words of 64 bits that depend only on a purpose.
+
+    Args:
+        *purpose: Words and indices that name the purpose, the seed of the run among them.
+
+    Returns:
+        uint64 (4,): SHA-256 of the purpose.
+    """
+    return np.frombuffer(hashlib.sha256(repr(purpose).encode()).digest(), "<u8").astype(np.uint64)
+
+
+def counter_bits(keys: np.ndarray, counters: np.ndarray) -> np.ndarray:
+    """Random words that can be computed at any place, without those before them: SplitMix64.
+
+    For one key, different counters give different words, as each step is a bijection.
+
+    Args:
+        keys: Keys, uint64, for example from `hashed_words`.
+        counters: Counters, uint64; broadcast against the keys.
+
+    Returns:
+        Uniform words of 64 bits, uint64.
+    """
+    words = keys + (counters + np.uint64(1)) * np.uint64(0x9E3779B97F4A7C15)
+    for shift, factor in ((30, 0xBF58476D1CE4E5B9), (27, 0x94D049BB133111EB)):
+        words = (words ^ (words >> np.uint64(shift))) * np.uint64(factor)
+    return words ^ (words >> np.uint64(31))

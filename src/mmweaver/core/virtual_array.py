@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from mmweaver.core.antenna_pattern import ELECTRICAL, cosine_pattern
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.shapes import AntennaPositions, PerIndex
@@ -28,6 +29,7 @@ class AntennaTable:
     rx_inverted: tuple[int, ...] = ()  # receivers fed from the opposite side: 180 degrees phase shift
     source: str = ""
     platforms: tuple[str, ...] = ()  # substrings by which TI's files name the board
+    electrical: tuple[tuple[str, Any], ...] = ()  # fields of RadarConfig by name
 
 
 def antenna_table(name: str, values: Any, source: str = "") -> AntennaTable:
@@ -36,7 +38,8 @@ def antenna_table(name: str, values: Any, source: str = "") -> AntennaTable:
     Args:
         name: Name of the table.
         values: Mapping with `tx` and `rx`, lists of (x, z) in half wavelengths, and optionally `rx_inverted`,
-            `source` and `platforms`.
+            `source`, `platforms`, fields of ELECTRICAL, and instead of a pattern `cosine_power`, the exponents of
+            the power pattern in azimuth and elevation.
         source: Origin of the positions. Default: the entry `source` of `values`.
 
     Returns:
@@ -46,6 +49,12 @@ def antenna_table(name: str, values: Any, source: str = "") -> AntennaTable:
         ValueError, KeyError, TypeError: If the lists are missing or malformed.
     """
     tx, rx = (tuple((float(x), float(z)) for x, z in values[key]) for key in ("tx", "rx"))
+    electrical = {key: values[key] for key in ELECTRICAL if key in values}
+    if "cosine_power" in values:
+        electrical |= cosine_pattern(*map(float, values["cosine_power"]))
+    if "antenna_pattern" in values:
+        rows = values["antenna_pattern"]
+        electrical["antenna_pattern"] = tuple((float(az), float(el), float(db)) for az, el, db in rows)
     inverted = tuple(int(one) for one in values.get("rx_inverted", []))
     return AntennaTable(
         name=name,
@@ -54,6 +63,7 @@ def antenna_table(name: str, values: Any, source: str = "") -> AntennaTable:
         rx_inverted=inverted,
         source=source or values.get("source", ""),
         platforms=tuple(values.get("platforms", [])),
+        electrical=tuple(electrical.items()),
     )
 
 

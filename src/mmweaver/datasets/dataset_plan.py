@@ -3,7 +3,9 @@
 import json
 import re
 import shlex
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +16,17 @@ from mmweaver.core.boards import find_board
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
+from mmweaver.datasets.planned_sequences import (
+    PlannedSequences,
+    RoomWords,
+    blocks_of_rooms,
+    held_out_leaks,
+    planned_sequences,
+)
 
-PLAN_VERSION = 3  # 2: first-order paths, one reflection coefficient per wall, no clutter
+# 2: first-order paths, one reflection coefficient per wall, no clutter. 3: seeds of 31 bits, one after another; read and
+# continued still. 4: seeds of 64 bits from counters (`planned_sequences`).
+PLAN_VERSION, SEQUENTIAL_VERSION = 4, 3
 RADAR_FILE = "radar.json"  # radar with range window, in the root of a data set
 # Activities of the paper and three more, each phrased in several ways.
 ACTIVITIES: dict[str, tuple[str, ...]] = {
@@ -138,8 +149,12 @@ class DatasetPlan:
     withheld: HeldOut = field(default_factory=HeldOut)
     geometry_only: bool = False  # signals are synthesised during training from stored geometry
     board: str = "ideal"  # "typical": a different board per room
+    packed: bool = False  # each room is one file instead of a folder
+    plan_version: int = PLAN_VERSION
 
     def __post_init__(self) -> None:
+        if self.plan_version not in (PLAN_VERSION, SEQUENTIAL_VERSION):
+            raise InputError(f"plan version {self.plan_version} is not made here; known: 3 and {PLAN_VERSION}")
         for name in ("num_layouts", "sequences_a_room", "num_frames"):
             if not 1 <= getattr(self, name) <= MOST:
                 raise InputError(f"{name} must be 1 to {MOST}, not {getattr(self, name)}")
@@ -148,9 +163,123 @@ class DatasetPlan:
         if not self.kinds:
             raise InputError("a data set needs at least one kind of room")
 
+    @property
+    def num_rooms(self) -> int:
+        """Number of rooms."""
+        return len(self.kinds) * self.num_layouts
+
+    def place_of(self, number: int) -> tuple[str, int]:
+        """Kind and layout of a room.
+
+        Args:
+            number: Number of the room in the plan, from 0.
+        """
+        return self.kinds[number // self.num_layouts], number % self.num_layouts
+
+    def name_of(self, number: int) -> str:
+        """Name of a room by number."""
+        return room_name(*self.place_of(number))
+
+    def part(self, number: int, count: int) -> range:
+        """Rooms of one of several machines: ranges of nearly the same length that cover the plan.
+
+        Args:
+            number: Number of the part, 1 to `count`.
+            count: Number of parts.
+
+        Returns:
+            Numbers of the rooms.
+        """
+        return range(self.num_rooms * (number - 1) // count, self.num_rooms * number // count)
+
+    def room(self, number: int) -> RoomSpec:
+        """One room with its sequences, computed without those before it.
+
+        Args:
+            number: Number of the room in the plan, from 0.
+        """
+        kind, layout = self.place_of(number)
+        if self.plan_version == SEQUENTIAL_VERSION:
+            return self._sequential_room(kind, layout)
+        (block,) = self.blocks(range(number, number + 1))
+        columns = (getattr(block, name)[0].tolist() for name in ("person", "activity", "text", "seed", "split"))
+        lighting = self.lightings[(self._words(number).choices >> 32) % len(self.lightings)]
+        names = list(ACTIVITIES)
+        specs = tuple(
+            SequenceSpec(
+                index=index,
+                person=person,
+                activity=names[activity],
+                text=ACTIVITIES[names[activity]][text],
+                seed=seed,
+                split=SPLITS[split],
+            )
+            for index, (person, activity, text, seed, split) in enumerate(zip(*columns, strict=True))
+        )
+        return RoomSpec(kind=kind, layout=layout, seed=self.seed, lighting=lighting, sequences=specs)
+
     def rooms(self) -> list[RoomSpec]:
-        """All rooms, sorted by kind."""
-        return [self._room(kind, layout) for kind in self.kinds for layout in range(self.num_layouts)]
+        """All rooms, sorted by kind; for large plans see `room` and `blocks`."""
+        return [self.room(number) for number in range(self.num_rooms)]
+
+    def blocks(self, numbers: range | None = None) -> Iterator[PlannedSequences]:
+        """Sequences of a range of rooms, some 50,000 at a time.
+
+        Args:
+            numbers: Numbers of the rooms. Default: all.
+
+        Yields:
+            Columns of the sequences in consecutive rooms.
+        """
+        numbers = range(self.num_rooms) if numbers is None else numbers
+        for block in blocks_of_rooms(numbers, self.sequences_a_room):
+            if self.plan_version == SEQUENTIAL_VERSION:
+                yield _columns_of(block.start, [self.room(number) for number in block])
+                continue
+            yield planned_sequences(
+                block.start,
+                [self._words(number) for number in block],
+                np.stack([self._table(*self.place_of(number)) for number in block]),
+                np.array([len(texts) for texts in ACTIVITIES.values()]),
+                self.sequences_a_room,
+            )
+
+    def check(self) -> dict[str, int]:
+        """Goes through the whole plan and looks for what leaks from training into a test.
+
+        Returns:
+            Number of sequences in each split that has any.
+
+        Raises:
+            InputError: If a held-out kind of room, layout, person or activity occurs in training, or a seed occurs
+                twice in a room.
+        """
+        counts, leaks = held_out_leaks(self.blocks(), self.place_of, SPLITS)
+        if leaks:
+            raise InputError(f"leak: {leaks[0]}" + (f", and {len(leaks) - 1} more" if len(leaks) > 1 else ""))
+        return {name: count for name, count in counts.items() if count}
+
+    def _words(self, number: int) -> RoomWords:
+        return RoomWords.of(self.seed, *self.place_of(number))
+
+    def _table(self, kind: str, layout: int) -> np.ndarray:
+        """Split by person and activity in a room, int8 (person, activity); -1: not generated."""
+        key = (kind, self._layouts_after(layout) < self.withheld.test_layouts)
+        if key not in self._tables:
+            splits = [self._splits(kind, layout, person) for person in range(len(PEOPLE_HEIGHT_M))]
+            self._tables[key] = np.array([[SPLITS.index(one) if one else -1 for one in row] for row in splits], np.int8)
+        return self._tables[key]
+
+    def _splits(self, kind: str, layout: int, person: int) -> list[str]:
+        after = self._layouts_after(layout)
+        return [
+            self.withheld.split(kind=kind, layouts_after=after, person=person, activity=activity)
+            for activity in ACTIVITIES
+        ]
+
+    @cached_property
+    def _tables(self) -> dict[tuple[str, bool], np.ndarray]:
+        return {}
 
     def board_of(self, room: RoomSpec, config: RadarConfig) -> Board:
         """Board whose hardware errors a room's signals have.
@@ -165,10 +294,14 @@ class DatasetPlan:
         Raises:
             InputError: If the board is unknown or does not fit the radar.
         """
-        number = int(stream(self.seed, "dataset board", room.kind, room.layout).integers(2**31))
+        if self.plan_version == SEQUENTIAL_VERSION:
+            number = int(stream(self.seed, "dataset board", room.kind, room.layout).integers(2**31))
+        else:
+            number = RoomWords.of(self.seed, room.kind, room.layout).board
         return find_board(self.board, config, number)
 
-    def _room(self, kind: str, layout: int) -> RoomSpec:
+    def _sequential_room(self, kind: str, layout: int) -> RoomSpec:
+        """A room of version 3, whose seeds follow one another in a stream of the room."""
         rng = stream(self.seed, "dataset", kind, layout)
         lighting = str(rng.choice(self.lightings))
         room = RoomSpec(kind=kind, layout=layout, seed=self.seed, lighting=lighting, sequences=())
@@ -203,12 +336,18 @@ class DatasetPlan:
 
     def to_json(self) -> str:
         """Serialises the plan; options unknown to older versions are written only if they are used."""
-        values = {"plan_version": PLAN_VERSION, **asdict(self)}
+        values = asdict(self)
+        values = {"plan_version": values.pop("plan_version"), **values}
         if not self.geometry_only:  # older data sets do not have it
             del values["geometry_only"]
         if self.board == "ideal":
             del values["board"]
+        if not self.packed:
+            del values["packed"]
         return json.dumps(values, indent=1)
+
+
+FLAGS = {"geometry_only": "--geometry-only", "packed": "--packed"}
 
 
 def command_of(plan: dict[str, Any], folder: Path) -> str:
@@ -233,8 +372,12 @@ def command_of(plan: dict[str, Any], folder: Path) -> str:
         f"--radar {shlex.quote(radar)}",
         f"--seed {plan['seed']}",
     ]
-    board = [] if plan.get("geometry_only") else [f"--board {shlex.quote(str(plan.get('board', 'ideal')))}"]
-    return " ".join([*words, *(["--geometry-only"] if plan.get("geometry_only") else []), *board, "--repair"])
+    words += [flag for name, flag in FLAGS.items() if plan.get(name)]
+    if not plan.get("geometry_only"):
+        words.append(f"--board {shlex.quote(str(plan.get('board', 'ideal')))}")
+    if plan.get("plan_version", SEQUENTIAL_VERSION) != PLAN_VERSION:
+        words.append(f"--plan-version {SEQUENTIAL_VERSION}")
+    return " ".join([*words, "--repair"])
 
 
 def check_plan(plan: Any, place: Path) -> dict[str, Any]:
@@ -278,3 +421,19 @@ def shell_words(command: Any) -> str:
 def room_name(kind: str, layout: int) -> str:
     """Name of a room's folder."""
     return f"{kind.replace(' ', '_')}_{layout:03d}"
+
+
+def _columns_of(first: int, rooms: Sequence[RoomSpec]) -> PlannedSequences:
+    names = list(ACTIVITIES)
+
+    def column(of: Any, kind: str) -> np.ndarray:
+        return np.array([[of(one) for one in room.sequences] for room in rooms], kind)
+
+    return PlannedSequences(
+        first=first,
+        person=column(lambda one: one.person, "u1"),
+        activity=column(lambda one: names.index(one.activity), "u1"),
+        text=column(lambda one: ACTIVITIES[one.activity].index(one.text), "u1"),
+        seed=column(lambda one: one.seed, "u8"),
+        split=column(lambda one: SPLITS.index(one.split), "u1"),
+    )

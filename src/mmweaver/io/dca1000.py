@@ -231,7 +231,7 @@ def write_bin(
     """
     words, counts = words_of(adc, iq_order=iq_order, tx_order=tx_order, counts_per_unit=counts_per_unit)
     with atomic_file(Path(path)) as temporary:
-        words.tofile(temporary)
+        temporary.write_bytes(memoryview(words))  # numpy's own tofile hides why it failed
     return counts
 
 

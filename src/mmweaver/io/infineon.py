@@ -75,12 +75,12 @@ def read_infineon_config(path: Path, options: RadarOptions | None = None) -> Rad
             raise InputError(f"{path} is no config.json of Infineon's Radar SDK ({error})") from None
 
 
-def read_infineon(folder: Path, options: RadarOptions | None = None, frames: slice = slice(None)) -> AdcCube:
+def read_infineon(folder: Path, config: RadarConfig | None = None, frames: slice = slice(None)) -> AdcCube:
     """Reads a recording.
 
     Args:
         folder: Folder with config.json and radar.npy.
-        options: As in `read_infineon_config`.
+        config: The radar. Default: that of config.json.
         frames: Range of frames. Default: all.
 
     Returns:
@@ -89,7 +89,7 @@ def read_infineon(folder: Path, options: RadarOptions | None = None, frames: sli
     Raises:
         InputError: If a file is malformed, or the two do not fit.
     """
-    config = read_infineon_config(folder / SETTINGS, options)
+    config = read_infineon_config(folder / SETTINGS) if config is None else config
     values = read_npy(folder / SAMPLES, mapped=True)
     if values.dtype.kind == "f" and values.ndim == 4 and values.size and float(np.max(values[:1])) <= 1:
         values = values * FULL_SCALE  # some versions store 0 to 1

@@ -16,7 +16,7 @@ from mmweaver.core.errors import InputError, file_named
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_text import read_json, read_text
 from mmweaver.io.radar_options import RadarOptions
-from mmweaver.io.ti_cfg import Line, Lines, setup_of_lines
+from mmweaver.io.ti_cfg import MAX_NAME, Line, Lines, setup_of_lines
 from mmweaver.io.ti_chirps import MAX_TX, SHIFTER_DEG, TiChirp, TiFrame, TiProfile, TiSetup, radar_from_ti
 
 MAX_BYTES = 2**20
@@ -68,7 +68,7 @@ def read_studio_script(path: Path | str, options: RadarOptions | None = None) ->
         raise InputError(f"{path} lacks ar1.{', ar1.'.join(missing)}; is it a script of mmWave Studio?")
     lane = [*calls.get("LVDSLaneConfig", []), *calls.get("LvdsLaneConfig", [])][-1:]
     with file_named(path):
-        setup = setup_of_lines(path.stem, _cfg_lines(calls))
+        setup = setup_of_lines(path.stem[:MAX_NAME], _cfg_lines(calls))
         setup = replace(setup, lvds_lanes=4 if lane and all(lane[0].values[1:5]) else 2)
         return radar_from_ti(setup, options or RadarOptions())
 
@@ -151,7 +151,9 @@ def read_mmwave_studio(path: Path | str, options: RadarOptions | None = None) ->
     values = read_json(path)
     with file_named(path):
         try:
-            return radar_from_ti(_setup(path.name.split(".")[0], values["mmWaveDevices"][0]), options or RadarOptions())
+            return radar_from_ti(
+                _setup(path.name.split(".")[0][:MAX_NAME], values["mmWaveDevices"][0]), options or RadarOptions()
+            )
         except InputError:
             raise
         except KeyError as error:

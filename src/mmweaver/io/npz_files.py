@@ -7,6 +7,7 @@ Reference: docs/conventions.md, "Files".
 
 import zipfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -105,7 +106,9 @@ def write_pose_npz(path: Path, *poses: PoseSequence, time_s: PerFrame | None = N
     Args:
         path: The file.
         *poses: People at common times. One person is written as float32 (frame, 22, 3) with scalar `height_m`; none or
-            several as (person, frame, 22, 3) with `height_m` (person,).
+            several as (person, frame, 22, 3) with `height_m` (person,). Where their vital signs are known:
+            `breathing_hz`, `heart_hz`, outward displacements `chest_m` and `belly_m` (frame,), times of heartbeats
+            `beat_s` and of held breaths `held_s` (hold, 2), per person as the joints.
         time_s: Times in seconds, (frame,), required without people. Default: those of the poses.
     """
     time_s = np.asarray(poses[0].time_s if time_s is None else time_s, np.float64)
@@ -119,7 +122,27 @@ def write_pose_npz(path: Path, *poses: PoseSequence, time_s: PerFrame | None = N
         joint_names=np.array(JOINT_NAMES),
         frame_time_s=time_s,
         height_m=height_m[first],
+        **_vital_arrays(poses, first),
     )
+
+
+def _vital_arrays(poses: tuple[PoseSequence, ...], first: Any) -> dict[str, np.ndarray]:
+    """Breathing and heartbeat of each person, (person, ...), padded with nan; nothing where they are not known."""
+    vitals = [one.vitals for one in poses if one.vitals is not None]
+    if not poses or len(vitals) < len(poses):
+        return {}
+
+    def padded(rows: list[np.ndarray]) -> np.ndarray:
+        out = np.full((len(rows), max(map(len, rows)), *rows[0].shape[1:]), np.nan)
+        for row, values in zip(out, rows, strict=True):
+            row[: len(values)] = values
+        return out
+
+    each = {name: np.array([getattr(one, name) for one in vitals]) for name in ("breathing_hz", "heart_hz")}
+    each |= {
+        name: padded([getattr(one, name) for one in vitals]) for name in ("chest_m", "belly_m", "beat_s", "held_s")
+    }
+    return {name: np.asarray(values[first]) for name, values in each.items()}
 
 
 def read_poses_npz(path: str | Path) -> tuple[PoseSequence, ...]:

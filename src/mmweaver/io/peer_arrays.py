@@ -11,16 +11,19 @@ RF-Genesis: radar_frames.npy, complex (frame, tx, rx, loop, sample).
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from jaxtyping import Complex
 
+from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
 from mmweaver.core.safe_files.array_checks import ArrayChecks
 from mmweaver.core.safe_files.safe_arrays import read_npy
 from mmweaver.io.raw_npy import MAX_SAMPLE, adc_of_array, read_adc_npy
+from mmweaver.io.ti_cfg import MAX_NAME
 
 HUPR_SHAPE = (16, 64, 64, 8)
 HUPR_ANTENNAS = (3, 4)
@@ -172,6 +175,57 @@ def _hupr_antennas(path: Path) -> Complex[np.ndarray, "range doppler antenna"]:
     if energy - np.sum(np.abs(out) ** 2) > MAX_RESIDUAL * energy:
         raise InputError(f"{path} has HuPR's shape, but its angle spectra are not those of HuPR's array")
     return out.reshape(*channels.shape[:2], -1).transpose(1, 0, 2)
+
+
+def is_rf_genesis(values: Any) -> bool:
+    """Whether decoded JSON is a configuration of RF-Genesis, such as its TI1843_config.json."""
+    return isinstance(values, dict) and {"num_tx", "fc", "slope", "adc_samples", "tx_loc", "rx_loc"} <= set(values)
+
+
+def read_rf_genesis_config(path: Path, values: dict[str, Any]) -> RadarConfig:
+    """Converts a configuration of RF-Genesis: MHz/us, microseconds, ksps, positions (x, z, y) in half wavelengths.
+
+    Args:
+        path: The file, after which the radar is named.
+        values: Its content.
+
+    Returns:
+        The radar; transmitters fire in the order of the file.
+
+    Raises:
+        InputError: If a value is missing or malformed, or the radar is impossible.
+    """
+    try:
+        start_hz, slope = float(values["fc"]), float(values["slope"]) * 1e12
+        samples, rate_hz = int(values["adc_samples"]), float(values["sample_rate"]) * 1e3
+        adc_start_s = float(values["adc_start_time"]) * 1e-6
+        middle_hz = start_hz + slope * (adc_start_s + samples / rate_hz / 2)
+        half_m = SPEED_OF_LIGHT_MPS / middle_hz / 2
+        tx, rx = (
+            tuple((float(x) * half_m, float(y) * half_m, float(z) * half_m) for x, z, y in values[name])
+            for name in ("tx_loc", "rx_loc")
+        )
+        return RadarConfig(
+            name=path.stem[:MAX_NAME],
+            start_frequency_hz=start_hz,
+            chirp_slope_hz_per_s=slope,
+            idle_time_s=float(values["idle_time"]) * 1e-6,
+            adc_start_time_s=adc_start_s,
+            ramp_end_time_s=float(values["ramp_end_time"]) * 1e-6,
+            num_samples=samples,
+            sample_rate_hz=rate_hz,
+            num_loops=int(values["chirp_per_frame"]),
+            frame_period_s=1 / float(values["frame_per_second"]),
+            tx_position_m=tx,
+            rx_position_m=rx,
+            tx_order=tuple(range(len(tx))),
+            first_range_bin=0,
+            num_range_bins=samples,
+        )
+    except InputError:
+        raise
+    except (KeyError, TypeError, ValueError, ZeroDivisionError, OverflowError) as error:
+        raise InputError(f"{path} is no configuration of RF-Genesis ({error})") from None
 
 
 # reader per project, (path, radar) -> samples or cube

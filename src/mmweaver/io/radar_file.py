@@ -10,7 +10,9 @@ from mmweaver.core.firmware_settings import FIRMWARE, FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.core.virtual_array import azimuth_resolution_rad, has_elevation
+from mmweaver.io.infineon import is_infineon, read_infineon_config
 from mmweaver.io.mmwave_studio import is_mmwave_studio, read_mmwave_studio, read_studio_script
+from mmweaver.io.peer_arrays import is_rf_genesis, read_rf_genesis_config
 from mmweaver.io.radar_options import RadarOptions, split_radar
 from mmweaver.io.ti_cfg import cfg_path, read_ti_cfg, ti_cfg_lines
 from mmweaver.io.ti_firmware import read_ti_firmware
@@ -21,7 +23,8 @@ def load_radar(name_or_path: str) -> RadarConfig:
 
     Args:
         name_or_path: Name of a preset, or path of a TI .cfg, an mmWave Studio .json or .lua, or the .json of a
-            RadarConfig. Options may follow: "profile.cfg#subframe=1;antennas=aop;lanes=4" (`io.radar_options`).
+            RadarConfig, of Infineon's Radar SDK or of RF-Genesis. Options may follow:
+            "profile.cfg#subframe=1;antennas=aop;lanes=4" (`io.radar_options`).
 
     Returns:
         The radar.
@@ -34,7 +37,7 @@ def load_radar(name_or_path: str) -> RadarConfig:
         return options.applied(PRESETS[name_or_path])
     path = Path(name_or_path)
     if path.is_file() and path.suffix.lower() in RADAR_FILES:
-        return RADAR_FILES[path.suffix.lower()](path, options)
+        return options.with_pattern(RADAR_FILES[path.suffix.lower()](path, options))
     what = "is neither .cfg nor .json" if path.is_file() else "is neither a radar preset nor a file"
     raise InputError(
         f"{name_or_path!r} {what}; presets: {', '.join(PRESETS)}; or give a TI .cfg, an mmWave Studio .json or"
@@ -87,6 +90,15 @@ def _read_json_radar(path: Path, options: RadarOptions) -> RadarConfig:
     values = read_json(path)
     if is_mmwave_studio(values):
         return read_mmwave_studio(path, options)
+    if is_infineon(values):
+        return read_infineon_config(path, options)
+    if is_rf_genesis(values):
+        return options.applied(read_rf_genesis_config(path, values))
+    if not isinstance(values, dict) or "schema_version" not in values:
+        raise InputError(
+            f"{path} is no radar that is known: neither a radar.json (mmweaver radar awr1843 --json > radar.json), nor"
+            " JSON of mmWave Studio, of Infineon's Radar SDK or of RF-Genesis"
+        )
     with file_named(path):
         return options.applied(RadarConfig.from_values(values))
 

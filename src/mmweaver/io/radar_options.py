@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from mmweaver.core.antenna_pattern import read_pattern
 from mmweaver.core.boards import ANTENNAS, halfwave_positions
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
@@ -21,11 +22,13 @@ class RadarOptions:
         sub_frame: Index of a sub-frame of an advanced frame.
         antennas: Antenna table of the board.
         lanes: LVDS lanes of a DCA1000 recording.
+        pattern: File with the pattern of one antenna, `antenna_tables.read_pattern`.
     """
 
     sub_frame: int | None = None
     antennas: AntennaTable | None = None
     lanes: int | None = None
+    pattern: str | None = None
 
     def applied(self, config: RadarConfig) -> RadarConfig:
         """Applies antennas and lanes to a preset or a radar.json.
@@ -43,6 +46,13 @@ class RadarOptions:
             raise InputError(f"radar {config.name!r} has no sub-frames; leave out --radar-set subframe=N")
         if self.lanes is not None:
             config = replace(config, lvds_lanes=self.lanes)
+        return self.with_pattern(self._with_antennas(config))
+
+    def with_pattern(self, config: RadarConfig) -> RadarConfig:
+        """The radar with the antenna pattern of a file, if one is given."""
+        return config if self.pattern is None else replace(config, antenna_pattern=read_pattern(self.pattern))
+
+    def _with_antennas(self, config: RadarConfig) -> RadarConfig:
         table = self.antennas
         if table is None:
             return config
@@ -54,6 +64,7 @@ class RadarOptions:
         return replace(
             config,
             rx_inverted=table.rx_inverted,
+            **dict(table.electrical),
             tx_position_m=halfwave_positions(table.tx_halfwaves, config.centre_frequency_hz),
             rx_position_m=halfwave_positions(table.rx_halfwaves, config.centre_frequency_hz),
         )
@@ -78,14 +89,14 @@ def split_radar(name: str) -> tuple[str, RadarOptions]:
     for part in rest.split(";"):
         key, _, value = part.partition("=")
         values[key] = value
-    if unknown := sorted(set(values) - {"subframe", "antennas", "lanes"}):
-        raise InputError(f"{name!r}: unknown option {unknown[0]!r}; known are subframe, antennas and lanes")
+    if unknown := sorted(set(values) - {"subframe", "antennas", "lanes", "pattern"}):
+        raise InputError(f"{name!r}: unknown option {unknown[0]!r}; known are subframe, antennas, lanes and pattern")
     try:
         sub_frame, lanes = (int(values[key]) if key in values else None for key in ("subframe", "lanes"))
     except ValueError:
         raise InputError(f"{name!r}: subframe and lanes are whole numbers") from None
     table = None if "antennas" not in values else read_antennas(values["antennas"])
-    return path, RadarOptions(sub_frame=sub_frame, antennas=table, lanes=lanes)
+    return path, RadarOptions(sub_frame=sub_frame, antennas=table, lanes=lanes, pattern=values.get("pattern"))
 
 
 def joined_radar(

@@ -102,6 +102,7 @@ REFUSED = {
 }
 OTHER_DEVICES = {"chirpComnCfg": "a low-power xWRL device"}
 ADC_FORMATS = {0: False, 1: True, 2: True}  # adcCfg's second number: real, complex 1x, complex 2x
+MAX_NAME = 100  # letters of a radar's name
 MCU_FRAME_NUMBERS = 8  # frameCfg of the MCU+ SDK, which inserts the number of samples before the period
 CHIRP_VARIATIONS = ("start frequency", "slope", "idle time", "ADC start time")
 FOUR_LANE_PLATFORMS = ("12xx", "14xx", "1243", "1443")  # devices with four LVDS lanes
@@ -157,7 +158,7 @@ def read_ti_cfg(path: Path | str, options: RadarOptions | None = None) -> RadarC
     platform = platform_of(text)
     with file_named(path):
         last = {command: found[-1].values for command, found in lines.items()}
-        setup = setup_of_lines(path.stem, lines)
+        setup = setup_of_lines(path.stem[:MAX_NAME], lines)
         is_four = any(part in platform for part in FOUR_LANE_PLATFORMS) or adc_buffer(lines)[1] == 0
         setup = replace(setup, antennas=antennas_of_cfg(last, platform), lvds_lanes=4 if is_four else 2)
         return radar_from_ti(setup, options or RadarOptions())

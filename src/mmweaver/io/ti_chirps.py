@@ -170,9 +170,9 @@ def radar_from_ti(setup: TiSetup, options: RadarOptions) -> RadarConfig:
     """
     index = setup.chosen_frame(options.sub_frame)
     chirps, profile = setup.loop(index)
-    board = (
-        options.antennas or setup.antennas or ANTENNAS["evm2944" if any(one.tx_mask >> 3 for one in chirps) else "isk"]
-    )
+    is_77_ghz = profile.start_frequency_ghz > 70
+    usual = "evm2944" if any(one.tx_mask >> 3 for one in chirps) else "boost" if is_77_ghz else "isk"
+    board = options.antennas or setup.antennas or ANTENNAS[usual]
     lanes = options.lanes or setup.lvds_lanes
     sequence, repeats = _repeated_sequence(_weights(setup.tx_mask, chirps, profile, board))
     enabled = [tx for tx in range(len(board.tx_halfwaves)) if any(chirp[tx] for chirp in sequence)]
@@ -218,6 +218,7 @@ def radar_from_ti(setup: TiSetup, options: RadarOptions) -> RadarConfig:
         rx_inverted=tuple(at for at, bit in enumerate(receivers) if bit in board.rx_inverted),
         frame_words_before=sum(counts[:index]) * words,
         frame_words_after=sum(counts[index + 1 :]) * words,
+        **dict(board.electrical),
     )
 
 

@@ -15,9 +15,11 @@ from torch import Tensor, nn
 
 from mmweaver.core.body_capsules import REFERENCE_HEIGHT_M
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.radar_pose import AT_CAMERA, RadarPose
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.virtual_array import azimuth_row
 from mmweaver.motion.animation.root_path import joints_and_velocities
+from mmweaver.motion.physiology import Physiology
 from mmweaver.propagation.paths import FrameClock
 from mmweaver.signal.windows import noise_share
 
@@ -68,6 +70,7 @@ def _numbers(ratio: Tensor) -> Tensor:
     return (10 * torch.log10(ratio + 1) - MIDDLE_DB) / SPREAD_DB
 
 
+STEP_S = 1e-3  # of numerical velocities
 HISTORY_FRAMES = 10  # before a part of a longer signal, as context of the pose encoder
 
 
@@ -86,9 +89,19 @@ class FrameMotion:
     num_before: int = 0
     height_m: float = REFERENCE_HEIGHT_M
     girth: float = 1.0
+    trunk_m: np.ndarray | None = None  # outward displacement of chest and belly by breathing, (frame, 2), and its rate
+    trunk_mps: np.ndarray | None = None
 
     @classmethod
-    def of(cls, pose: PoseSequence, config: RadarConfig, num_frames: int, first_frame: int = 0) -> "FrameMotion":
+    def of(
+        cls,
+        pose: PoseSequence,
+        config: RadarConfig,
+        num_frames: int,
+        first_frame: int = 0,
+        physiology: Physiology | None = None,
+        radar_pose: RadarPose = AT_CAMERA,
+    ) -> "FrameMotion":
         """Samples a dense motion at radar frames, with preceding frames as context where the motion is known.
 
         Args:
@@ -96,6 +109,8 @@ class FrameMotion:
             config: The radar.
             num_frames: Number of frames.
             first_frame: Number of the first one, in the time of the motion.
+            physiology: Sway, tremor, breathing and heartbeat of the person; by default none.
+            radar_pose: Pose of the radar, for what is up.
         """
         middle_s = FrameClock(config).middle_s
         if len(middle_s) == 1:
@@ -105,7 +120,19 @@ class FrameMotion:
         frames = np.arange(first_frame - before, first_frame + num_frames)
         time_s = frames[:, None] * config.frame_period_s + middle_s
         joints_m, velocity_mps = joints_and_velocities(pose, time_s.ravel())
+        trunk = {}
+        if physiology is not None:
+            level_m, late_m = (radar_pose.in_level_frame(part) for part in (joints_m, STEP_S * velocity_mps + joints_m))
+            each = [(level_m, time_s.ravel()), (late_m, time_s.ravel() + STEP_S)]
+            moved_m = [radar_pose.seen(physiology.moved(*one, pose.height_m)) for one in each]
+            trunk_m = [physiology.trunk_m(*one, pose.height_m) for one in each]
+            joints_m, velocity_mps = (
+                moved_m[0].astype(np.float32),
+                (moved_m[1] - moved_m[0]).astype(np.float32) / STEP_S,
+            )
+            trunk = {"trunk_m": trunk_m[0], "trunk_mps": (trunk_m[1] - trunk_m[0]) / STEP_S}
         return cls(
+            **trunk,
             joints_m=joints_m,
             velocity_mps=velocity_mps,
             subject=pose.subject,
@@ -131,6 +158,14 @@ class FrameMotion:
         """Joints at the middle of each frame, without context frames, float32 (frame, 22, 3)."""
         middle_m = self.joints_m[self.num_segments // 2 :: self.num_segments]
         return torch.from_numpy(middle_m[self.num_before :]).float()
+
+    def start_joints_m(self, clock: FrameClock) -> Tensor:
+        """Joints at the first node of each frame and one frame period after the last one's, (frame + 1, 22, 3)."""
+        joints, velocity = (part[self.num_before :] for part in self.segments(clock))
+        first_s = float(clock.middle_s[0] - clock.node_s[0])
+        last_s = float(clock.config.frame_period_s + clock.node_s[0] - clock.middle_s[-1])
+        starts = joints[:, 0] - velocity[:, 0] * first_s
+        return torch.cat([starts, joints[-1:, -1] + velocity[-1:, -1] * last_s])
 
     def node_joints_m(self, clock: FrameClock) -> np.ndarray:
         """Joints at the clock's nodes, without context frames, (frame, node, 22, 3)."""

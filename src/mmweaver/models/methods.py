@@ -16,6 +16,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
 from mmweaver.core.registry import Registry
 from mmweaver.core.stages import Stages
+from mmweaver.motion.physiology import Physiology
 from mmweaver.propagation.board_effects import built_radar
 from mmweaver.propagation.diffuse_clutter import seed_of_room
 from mmweaver.propagation.paths import ScenePaths
@@ -235,7 +236,10 @@ class Learned:
         with stages("encode the room"):
             room = self._encoded.get(scene, config, background, board)
         with stages("weave the signal"):
-            motions = [FrameMotion.of(pose, config, num_frames, first_frame) for pose in poses]
+            at = scene.radar_pose
+            motions = [
+                FrameMotion.of(pose, config, num_frames, first_frame, Physiology.of(pose, seed), at) for pose in poses
+            ]
             cube, adc = room.signal(
                 motions,
                 seed=scene.radar_pose.noise_seed(seed),

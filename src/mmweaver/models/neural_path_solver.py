@@ -24,18 +24,19 @@ from mmweaver.core.board import Board
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube, Scene
 from mmweaver.core.seeding import stream
-from mmweaver.core.skeleton import joint
-from mmweaver.models.body_anchors import MIRRORED, NUM_ANCHORS, NUM_GHOSTS, facing
+from mmweaver.core.skeleton import JOINT_NAMES, joint
+from mmweaver.models.body_anchors import MIRRORED, NUM_ANCHORS, NUM_GHOSTS, anchor_places, facing
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.scene_tensors import GivenRoom, SceneTensors
 from mmweaver.propagation.adc_synthesis import AdcSynthesis, one_thread
 from mmweaver.propagation.board_effects import BoardEffects
-from mmweaver.propagation.body_model import ScatteringBody
+from mmweaver.propagation.body_model import BELLY, CHEST, CHEST_BACK, ScatteringBody
 from mmweaver.propagation.cube_rendering import CubeRenderer
 from mmweaver.propagation.image_method import static_points
+from mmweaver.propagation.interference import interference
 from mmweaver.propagation.mean_power import MeanEchoes, MeanPower
-from mmweaver.propagation.occlusion import occluded
+from mmweaver.propagation.occlusion import occluded, people_shadow
 from mmweaver.propagation.paths import FrameClock, Paths, ScenePaths, StaticPaths
 from mmweaver.propagation.receiver import BackgroundRecording, check_recording, quantise
 from mmweaver.propagation.second_order import ROOM_MARGIN_M, BodyBodyPaths, BodyRoomPaths, PairSampling
@@ -189,15 +190,15 @@ class LearnedRoom:
         ]
         if self.given.traced.propagation.bounces > 1 and self.has_others:
             moving.append(second_order_paths(self.given.traced, motions, self.renderer.clock))
-        noticed_m = self.static.departure_vertex_m[: self._num_noticed]
-        by_each = [occluded(noticed_m, motion.middle_joints_m) for motion in motions]
-        hidden = torch.zeros(len(by_each[0]), len(self.static), dtype=torch.uint8)
-        hidden[:, : self._num_noticed] = torch.stack(by_each).any(dim=0)
+        starts_m = [motion.start_joints_m(self.renderer.clock) for motion in motions]
+        hidden = torch.zeros(len(starts_m[0]), len(self.static))
+        noticed = self.static[: self._num_noticed]
+        hidden[:, : self._num_noticed] = people_shadow(noticed, starts_m, self.config.wavelength_m)
         return ScenePaths(static=self.static, moving=Paths.cat(moving, 1), occluded=hidden)
 
     def _empty_room_paths(self, num_frames: int) -> ScenePaths:
         rows = num_frames * len(self.renderer.clock.segments)
-        hidden = torch.zeros(num_frames, len(self.static), dtype=torch.uint8)
+        hidden = torch.zeros(num_frames + 1, len(self.static))
         return ScenePaths(static=self.static, moving=Paths.padded([Paths.none()] * rows), occluded=hidden)
 
     def _moving(self, motion: FrameMotion, others: list[FrameMotion], first_frame: int) -> Paths:
@@ -221,6 +222,15 @@ class LearnedRoom:
             for index, one in enumerate(each)
         ]
         echoes = replace(echoes, cross_section_m2=echoes.cross_section_m2 * torch.stack(shown, 1))
+        if motion.trunk_m is not None and motion.trunk_mps is not None:
+            share = trunk_share(joints)
+            late_m, late_mps = (
+                share @ torch.from_numpy(part).float().unflatten(0, (-1, count))[motion.num_before :, :, :, None]
+                for part in (motion.trunk_m, motion.trunk_mps)
+            )
+            echoes = replace(
+                echoes, range_m=echoes.range_m - late_m[..., 0], velocity_mps=echoes.velocity_mps - late_mps[..., 0]
+            )
         return self._sampled(echoes, joints, motion.subject, first_frame)
 
     def _sampled(self, echoes: MeanEchoes, joints_m: Tensor, subject: int, first_frame: int) -> Paths:
@@ -294,50 +304,61 @@ class LearnedRoom:
         """
         with torch.inference_mode(), one_thread():
             paths = self._paths(motions, first_frame) if motions else self._empty_room_paths(num_frames or 1)
-            grid = CubeGrid.of(self.nominal, len(paths.occluded), first_frame)
-            frames, layer = first_frame + np.arange(len(paths.occluded)), self.layer
+            count = len(paths.occluded) - 1
+            grid = CubeGrid.of(self.nominal, count, first_frame)
+            frames, layer = first_frame + np.arange(count), self.layer
+            paths = self.given.things.added(paths, frames, self.renderer.clock, self.given.traced)
             if self.board is not None:
                 paths = replace(paths, moving=self.board.recorded_moving(paths.moving, frames, seed))
                 drift = torch.from_numpy(self.board.drift(frames, seed)).to(torch.complex64)
                 layer = layer + drift[:, None, None] * self._layer_rate
             part = (first_frame,) if first_frame else ()
-            noise = cell_noise(stream(seed, "scatterer field noise", *part), self.config, len(paths.occluded))
+            noise = cell_noise(stream(seed, "scatterer field noise", *part), self.config, count)
             noise *= np.float32(math.sqrt(self.noise_power)) * self._noise_factor
             values = self.renderer.moving(paths.moving)
-            lost = paths.occluded[:, : self._num_noticed].bool()
-            self.renderer.add_static(values, layer - self._noticed.layers(lost))
+            lost = self._noticed.layers(paths.occluded[:, : self._num_noticed])
+            self.renderer.add_static(values, layer - lost[:-1])
+            self.renderer.add_ramp(values, lost[:-1] - lost[1:])
             values += torch.from_numpy(noise)
+            interferers, bursts = self.given.scene.interferers, None
+            if interferers:
+                bursts = interference(interferers, self.given.scene.radar_pose, self.nominal, frames, seed)
+                values += torch.from_numpy(cube_values(bursts, self.config))
             cube = RadarCube(values=values.numpy(), grid=grid, config=self.nominal, scale=1.0)
-            adc = self._adc(paths, replace(cube, values=noise), seed, first_frame) if keep_adc else None
+            adc = self._adc(paths, replace(cube, values=noise), seed, first_frame, bursts) if keep_adc else None
         unit = 1.0 if self.background is None else self.background.unit
         if unit == 1.0:
             return cube, adc
         cube = replace(cube, values=cube.values / np.float32(unit), scale=unit)
         return cube, None if adc is None else replace(adc, samples=adc.samples / np.float32(unit), scale=unit)
 
-    def _adc(self, paths: ScenePaths, noise: RadarCube, seed: int, first_frame: int) -> AdcCube:
-        """ADC samples of the paths, with noise whose cube is `noise` and which is white outside the cube's cells."""
+    def _adc(
+        self, paths: ScenePaths, noise: RadarCube, seed: int, first_frame: int, bursts: np.ndarray | None
+    ) -> AdcCube:
+        """ADC samples of the paths and of interference, with noise whose cube is `noise`, white outside its cells."""
         config = self.config
         if self._synthesis is None:
             synthesis = AdcSynthesis(config, board=self.board, is_faded=True)
             self._synthesis = synthesis, self._static_adc(synthesis)
         synthesis, static = self._synthesis
-        frames, count = len(paths.occluded), len(synthesis.clock.segments)
+        frames, count = len(paths.occluded) - 1, len(synthesis.clock.segments)
         samples = np.empty(
             (frames, config.num_loops, config.num_slots, config.num_rx, config.num_samples), np.complex64
         )
         for first in range(0, frames, ADC_FRAMES_AT_ONCE):
             some = slice(first, min(first + ADC_FRAMES_AT_ONCE, frames))
             moving = paths.moving[some.start * count : some.stop * count]
-            here = replace(paths, moving=moving, occluded=paths.occluded[some])
-            still = static - synthesis.occluded(here)
+            here = replace(paths, moving=moving, occluded=paths.occluded[some.start : some.stop + 1])
+            still = static
             if self.board is not None:
                 drift = self.board.drift(first_frame + np.arange(some.start, some.stop), seed)
                 still = still + torch.from_numpy(drift).to(torch.complex64)[:, None, None, None] * self._drift_rate
-            clean = synthesis.moving(moving) + still[:, None]
+            clean = synthesis.moving(moving) + (still[:, None] if still.dim() > 3 else still)
+            synthesis.subtract_occluded(clean, here)
             if self.board is not None:
                 clean[:, 0, self.board.first_slot] *= self.board.first_chirp
             clean = clean.numpy() + self._sample_noise(noise.values[some], first_frame + first, seed)
+            clean = clean if bursts is None else clean + bursts[some]
             samples[some] = clean if config.complex_samples else np.real(clean)
         count_sqrt_mw = config.adc_count_sqrt_mw if self.background is None else self.background.count_sqrt_mw
         quantise(torch.from_numpy(samples), count_sqrt_mw)
@@ -375,6 +396,20 @@ class LearnedRoom:
         grid = CubeGrid.of(config, len(cells))
         own = adc_from_cube(RadarCube(values=missing, grid=grid, config=config, scale=1.0))
         return white + own.samples
+
+
+def trunk_share(joints_m: Tensor) -> Tensor:
+    """How far each echo moves towards the radar with the fronts of chest and belly, (..., echo, 2).
+
+    Args:
+        joints_m: Joints (..., 22, 3) in metres.
+    """
+    ahead = -(facing(joints_m) * torch.nn.functional.normalize(joints_m[..., joint("spine3"), :], dim=-1)).sum(-1)
+    seen = ahead.clamp(min=0) + CHEST_BACK * (-ahead).clamp(min=0)
+    parts = torch.tensor([[part.get(name, 0.0) for part in (CHEST, BELLY)] for name in JOINT_NAMES])
+    of_body = anchor_places(parts).clamp(0, 1)
+    of_ghosts = parts[list(MIRRORED)].repeat(NUM_GHOSTS // len(MIRRORED), 1) / 2  # one of two legs leads straight there
+    return torch.cat([of_body, of_ghosts]) * seen[..., None, None]
 
 
 def aspect(joints_m: Tensor) -> Tensor:

@@ -20,6 +20,7 @@ from mmweaver.propagation.image_method import SpecularReflector, apparent_direct
 from mmweaver.propagation.paths import Interaction, StaticPaths
 from mmweaver.propagation.radar_equation import direction_loss_db
 from mmweaver.propagation.static_paths import ALL_PATHS, FIRST_ORDER, PreparedRoom, Propagation, RayTracedRoom
+from mmweaver.propagation.things import ThingPaths, reflector_paths
 from mmweaver.scene.photo.depth_grid import DepthGrid, make_grid
 
 IMAGE_ROWS, IMAGE_COLUMNS = 120, 160
@@ -179,7 +180,9 @@ class GivenRoom:
 
     view: SceneTensors
     traced: RayTracedRoom
-    others: StaticPaths  # of second order, and clutter
+    others: StaticPaths  # of second order, clutter, and reflectors
+    things: ThingPaths
+    scene: Scene
 
     @classmethod
     def of(
@@ -196,5 +199,14 @@ class GivenRoom:
         traced = RayTracedRoom(scene, config, seed, propagation)
         others = [traced.paths.select(Interaction.ROOM_ROOM)]
         if propagation.clutter:
-            others.append(diffuse_clutter(config, seed_of_room(scene) + seed))
-        return cls(view=SceneTensors.of(scene, config, traced), traced=traced, others=StaticPaths.cat(others))
+            others.append(diffuse_clutter(config, seed_of_room(scene) + seed, scene))
+        if scene.reflectors:
+            others.append(reflector_paths(scene.reflectors, scene.radar_pose, config))
+        things = ThingPaths(scene, config)
+        return cls(
+            scene=scene,
+            things=things,
+            view=SceneTensors.of(scene, config, traced),
+            traced=traced,
+            others=StaticPaths.cat(others),
+        )

@@ -64,12 +64,17 @@ class AdcSynthesis:
         self._extra_m = 0.0 if board is None else board.extra_length_m
         self._fast = FastTime(self.config)
         # each with its weight per chirp where segments are cross-faded
-        self._segments: list[tuple[_SegmentFactors, Tensor | None]] = [
-            (_SegmentFactors(one, self.device), None) for one in self.clock.segments
+        self._segments: list[tuple[_SegmentFactors, tuple[int, int, float], Tensor | None]] = [
+            (_SegmentFactors(one, self.device), (index, 0, 0.0), None) for index, one in enumerate(self.clock.segments)
         ]
-        if is_faded and len(self._segments) > 1:
+        if is_faded and len(self.clock.faded_segments) > 1:
             self._segments = [
-                (_SegmentFactors(one.segment, self.device), self._share(one.share)) for one in self.clock.faded_segments
+                (
+                    _SegmentFactors(one.segment, self.device),
+                    (one.source, one.frame, one.late_s),
+                    self._share(one.share),
+                )
+                for one in self.clock.faded_segments
             ]
 
     def moving(self, paths: Paths) -> Tensor:
@@ -81,7 +86,7 @@ class AdcSynthesis:
         Returns:
             Samples (frame, loop, tx, rx, sample), complex64, in sqrt(mW).
         """
-        config, count = self.config, len(self._segments)
+        config, count = self.config, len(self.clock.segments)
         frames = len(paths) // count
         adc = torch.empty(
             frames,
@@ -94,10 +99,10 @@ class AdcSynthesis:
         )
         # On the CPU one frame at a time: no padding is computed, and the working set stays in the cache.
         batches = [slice(0, frames)] if self.device.type != "cpu" else [slice(at, at + 1) for at in range(frames)]
-        if any(share is not None for _, share in self._segments):
+        if any(share is not None for *_, share in self._segments):
             adc.zero_()
-        for index, (segment, share) in enumerate(self._segments):
-            of_segment = paths[index::count].to(self.device)
+        for segment, (source, frame, late_s), share in self._segments:
+            of_segment = paths.of_segment(source, count, frame, late_s).to(self.device)
             for batch in batches:
                 some = unpadded(of_segment[batch])
                 own = adc[batch, segment.loops]
@@ -151,13 +156,13 @@ class AdcSynthesis:
         return self._elements.slots(self.array.mixed(plain.addcmul(tilted, self._turn_per_m), 1), 1)
 
     def occluded(self, paths: ScenePaths) -> Tensor:
-        """Samples of the static paths that are occluded in each frame, to be subtracted from those of the empty room.
+        """Samples of the occluded part of the static paths, to be subtracted from those of the empty room.
 
         Args:
             paths: All paths of the frames.
 
         Returns:
-            Samples (frame, tx, rx, sample), complex64, in sqrt(mW).
+            Samples (row, tx, rx, sample), complex64, in sqrt(mW), one per row of `ScenePaths.occluded`.
         """
         weight = paths.occluded.float()
         if self.device.type != "cpu":
@@ -166,6 +171,22 @@ class AdcSynthesis:
         factors = self._static_factors(paths.static[some])
         # one frame at a time, so that a frame is bit-identical whichever other frames are computed with it
         return torch.cat([self._recorded(factors.summed(frame[None])) for frame in weight[:, some]])
+
+    def subtract_occluded(self, samples: Tensor, paths: ScenePaths) -> None:
+        """Subtracts the occluded part of the static paths from samples, in place.
+
+        Args:
+            samples: Samples (frame, loop, tx, rx, sample).
+            paths: All paths of the frames.
+        """
+        lost = self.occluded(paths)
+        if len(lost) == len(samples):
+            samples -= lost[:, None]
+            return
+        late = (self.clock.chirp_s.mean(axis=1) - self.clock.node_s[0]) / self.config.frame_period_s
+        late = torch.from_numpy(late.astype(np.float32)).to(lost)[:, None, None, None]
+        for frame, before, after in zip(samples, lost[:-1], lost[1:], strict=True):
+            frame -= torch.lerp(before[None], after[None], late)
 
     def leakage(self, length_m: Tensor, amplitude: Tensor) -> Tensor:
         """Samples of the TX-RX leakage, which are the same in every loop.

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from mmweaver.core.antenna_pattern import Pattern, pattern_grid
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.shapes import PerPoint, Points
 
@@ -31,7 +32,7 @@ def pattern_db(direction: Any, config: RadarConfig) -> Any:
 
     Args:
         direction: Unit vectors (..., 3), an array or a tensor.
-        config: The radar, for its beamwidths.
+        config: The radar, for its pattern or beamwidths.
 
     Returns:
         Loss (...) in dB, 0 at boresight, at most that of the side lobes.
@@ -41,13 +42,35 @@ def pattern_db(direction: Any, config: RadarConfig) -> Any:
     else:
         import torch as xp
     x, y, z = (direction[..., axis] for axis in range(3))
-    azimuth_deg = xp.abs(xp.rad2deg(xp.arctan2(x, y)))
-    elevation_deg = xp.abs(xp.rad2deg(xp.arcsin(xp.clip(z, -0.999, 0.999))))
-    loss_db = 3 * (azimuth_deg / (config.azimuth_beamwidth_deg / 2)) ** AZIMUTH_ROLL_OFF
-    loss_db = loss_db + 3 * (elevation_deg / (config.elevation_beamwidth_deg / 2)) ** ELEVATION_ROLL_OFF
+    azimuth_deg = xp.rad2deg(xp.arctan2(x, y))
+    elevation_deg = xp.rad2deg(xp.arcsin(xp.clip(z, -0.999, 0.999)))
+    if config.antenna_pattern:
+        loss_db = _tabulated_db(azimuth_deg, elevation_deg, config.antenna_pattern, xp)
+    else:
+        loss_db = 3 * (xp.abs(azimuth_deg) / (config.azimuth_beamwidth_deg / 2)) ** AZIMUTH_ROLL_OFF
+        loss_db = loss_db + 3 * (xp.abs(elevation_deg) / (config.elevation_beamwidth_deg / 2)) ** ELEVATION_ROLL_OFF
     # side lobes of a vertically polarised antenna vanish along its E-field, straight up and down
     side_lobes_db = -FLOOR_DB - 10 * xp.log10(xp.clip(1 - z**2, 1e-12, 1.0))
     return xp.minimum(loss_db, side_lobes_db)
+
+
+def _tabulated_db(azimuth_deg: Any, elevation_deg: Any, pattern: Pattern, xp: Any) -> Any:
+    """Loss (...) in dB by bilinear interpolation, that of the table's edge beyond it."""
+    *axes, loss = pattern_grid(pattern)
+    if xp is not np:
+        loss = xp.as_tensor(loss, dtype=azimuth_deg.dtype, device=azimuth_deg.device)
+    places = []
+    for axis, angle in zip(axes, (azimuth_deg, elevation_deg), strict=True):
+        if xp is not np:
+            axis = xp.as_tensor(axis, dtype=angle.dtype, device=angle.device)
+        inside = xp.clip(angle, float(axis[0]), float(axis[-1]))
+        low = xp.clip(xp.searchsorted(axis, inside) - 1, 0, max(len(axis) - 2, 0))
+        high = xp.clip(low + 1, 0, len(axis) - 1)
+        width = axis[high] - axis[low]
+        places.append((low, high, (inside - axis[low]) / xp.where(width > 0, width, xp.ones_like(width))))
+    (left, right, across), (below, above, up) = places
+    one, other = (loss[side, below] * (1 - up) + loss[side, above] * up for side in (left, right))
+    return one * (1 - across) + other * across
 
 
 def scatterer_gain(config: RadarConfig) -> float:

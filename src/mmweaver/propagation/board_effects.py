@@ -50,6 +50,9 @@ class BoardEffects:
         self.extra_length_m = 2 * board.range_bias_m
         self.channels = _channels(board, config)
         first = 1 + board.first_chirp_amplitude_percent / 100
+        # first order in the errors: a signal's image at the negative frequency, relative to the signal
+        gain = 10 ** (board.iq_gain_db / 20)
+        self.iq_image = complex((1 - gain * np.exp(1j * np.radians(board.iq_phase_deg))) / 2)
         self.first_chirp = complex(first * np.exp(1e-3j * board.first_chirp_phase_mrad))
         self.first_slot = 0 if config.is_coded else config.tx_order[0]
 

@@ -27,7 +27,9 @@ from mmweaver.propagation.skin_scattering import SkinEcho
 
 AVERAGE_SUBJECT, AVERAGE_NUM_POINTS = 90_000, 600  # the average body, which no generated sequence uses
 DEFAULT_NUM_POINTS = 800
-CHEST = {"pelvis": 0.3, "spine1": 0.7, "spine2": 1.0, "spine3": 0.8}  # breathing amplitude relative to the chest
+# how far each part of the trunk follows the front of the chest and of the belly
+CHEST = {"spine1": 0.3, "spine2": 1.0, "spine3": 0.8}
+BELLY = {"pelvis": 0.5, "spine1": 0.8}
 CHEST_BACK = 0.15  # breathing amplitude of the back relative to the front
 # slope of each capsule's radius along its axis
 TAPER = np.array([(c.end_radius_m - c.start_radius_m) / c.typical_length_m * (c.start != c.end) for c in CAPSULES])
@@ -94,17 +96,17 @@ class ScatteringBody:
 
     @cached_property
     def _breathes(self) -> np.ndarray:
-        """Breathing amplitude of each point relative to the chest's front: 1 in front, small at the sides and back."""
-        share = np.array([CHEST.get(capsule.start, 0.0) for capsule in CAPSULES])[self.part]
+        """Share (point, 2) of the displacements of chest and belly: 1 in front, small at the sides and back."""
+        share = np.array([[part.get(one.start, 0.0) for part in (CHEST, BELLY)] for one in CAPSULES])[self.part]
         front = np.maximum(np.sin(self.angle_rad), 0.0)
-        return share * (CHEST_BACK + (1 - CHEST_BACK) * front)
+        return share * (CHEST_BACK + (1 - CHEST_BACK) * front)[:, None]
 
-    def skin(self, joints_m: np.ndarray, chest_m: np.ndarray | None = None) -> Skin:
+    def skin(self, joints_m: np.ndarray, trunk_m: np.ndarray | None = None) -> Skin:
         """Poses the skin points.
 
         Args:
             joints_m: Joints (time, 22, 3) in metres.
-            chest_m: Outward displacement of the chest's front (time,) in metres; by default none.
+            trunk_m: Outward displacement of the fronts of chest and belly (time, 2) in metres; by default none.
 
         Returns:
             Positions and normals of the skin points.
@@ -126,9 +128,9 @@ class ScatteringBody:
         axis_points = posed.start_m[:, part] + posed.axis_m[:, part] * along[None, :, None]
         place = axis_points + np.einsum("tpij,pj->tpi", rotation, offset)
         outward = np.einsum("tpij,pj->tpi", rotation, normal)
-        if chest_m is not None:
-            trunk = np.flatnonzero(self._breathes)
-            place[:, trunk] += outward[:, trunk] * (chest_m[:, None] * self._breathes[trunk])[..., None]
+        if trunk_m is not None:
+            trunk = np.flatnonzero(self._breathes.any(axis=1))
+            place[:, trunk] += outward[:, trunk] * (trunk_m @ self._breathes[trunk].T)[..., None]
         return Skin(place_m=place, normal=outward)
 
     def hull(self, joints_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

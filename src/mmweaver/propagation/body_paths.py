@@ -38,7 +38,7 @@ class BodyPaths(VisibleBody):
         body: ScatteringBody,
         clock: FrameClock,
         joints_m: np.ndarray,
-        chest_m: np.ndarray | None = None,
+        trunk_m: np.ndarray | None = None,
         hulls: list[RayCaster] | None = None,
         known: Visibility | None = None,
     ):
@@ -49,11 +49,11 @@ class BodyPaths(VisibleBody):
             body: The person's skin points.
             clock: Clock of the radar's frame.
             joints_m: Joints (frame, node, 22, 3) in metres at the clock's nodes.
-            chest_m: Outward displacement of the chest (frame, node) in metres; by default none.
+            trunk_m: Outward displacement of chest and belly (frame, node, 2) in metres; by default none.
             hulls: One occluding mesh per frame, of all people present; by default the body's own.
             known: Visibility of an earlier run, used instead of rays.
         """
-        super().__init__(room, body, BodyAtFrames.of(body, clock, joints_m, chest_m, hulls if known is None else []))
+        super().__init__(room, body, BodyAtFrames.of(body, clock, joints_m, trunk_m, hulls if known is None else []))
         self.known = known
         self.over_faces: list[np.ndarray | None] = [None] * len(room.reflectors)
         self.visible = self._visible()
@@ -132,12 +132,11 @@ class BodyPaths(VisibleBody):
         to_corner = (corner - place) / np.maximum(length_m - leg_m, 1e-6)[..., None]
         cos = np.clip((normal * to_corner).sum(-1), -1, 1)  # undefined where skin touches the face
         taper = face.inside(corner, fresnel_radius_m(leg_m, length_m - leg_m, self.config.wavelength_m))
-        cos_face = np.abs(to_corner @ face.plane.normal)
         seen = (cos > 0.02) & (face.side(place) > 0.02) & (taper > 0.02) & (length_m < 2 * self.config.max_range_m)
         if not seen.any():
             return []
         most = min(GHOST_SLAB_ECHOES, self.room.propagation.slab_echoes)
-        slab = face.echoes(cos_face, self.config.centre_frequency_hz, most)
+        slab = face.echoes(to_corner, self.config.centre_frequency_hz, most)
         over = self.gain * self.pattern(corner / np.maximum(leg_m, 1e-6)[..., None]) / length_m * taper
         micro = self.body.micro_phase[chosen]
         direct = self.pattern(-self.towards[:, chosen]) / self.distance_m[:, chosen]

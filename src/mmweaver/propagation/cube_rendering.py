@@ -45,10 +45,10 @@ class StaticResponse(TensorRecord):
         return torch.view_as_complex((in_range.T @ antennas).unflatten(1, (-1, 2)))
 
     def layers(self, chosen: Tensor) -> Tensor:
-        """Sums of the selected paths of each frame.
+        """Weighted sums of the paths of each frame.
 
         Args:
-            chosen: Bool or 0/1 mask (frame, path).
+            chosen: Weights (frame, path), or a mask.
 
         Returns:
             Layers (frame, range, antenna), complex64, in sqrt(mW).
@@ -108,6 +108,9 @@ class CubeRenderer:
             static = torch.fft.fft(by_antenna, dim=0) * compensation
         self.static_bins = torch.nonzero(static.abs().amax(dim=1) > 1e-6)[:, 0]  # a Hann window has three
         self._static_doppler = static[self.static_bins]
+        late_s = self.clock.chirp_s.mean(axis=1) - self.clock.node_s[0]
+        late = torch.from_numpy((late_s / config.frame_period_s).astype(np.float32))
+        self._ramp_doppler = torch.fft.fft(weight * late)[:, None] * compensation  # of what grows by 1 per frame
         fourier = torch.fft.fft(torch.eye(config.num_loops, dtype=torch.complex64)) * weight[:, None]  # (loop, doppler)
         by_tx = fourier * compensation[:, :: config.num_rx].T[:, None]  # (tx, loop, doppler)
         by_tx = by_tx if chirps is None else by_tx * chirps.T[..., None]
@@ -122,14 +125,15 @@ class CubeRenderer:
         Returns:
             Values (frame, range, doppler, antenna), complex64, in sqrt(mW).
         """
-        config, count = self.config, len(self._segments)
+        config, count = self.config, len(self.clock.segments)
         frames = len(paths) // count
         values = torch.empty(
             frames, config.num_range_bins, config.num_antennas, config.num_loops, dtype=torch.complex64
         )  # Doppler last: loops over a few antennas are mostly overhead
         flat = torch.view_as_real(values).flatten(2)  # (frame, range, 2 antenna doppler)
-        for index, segment in enumerate(self._segments):
-            self._add_segment(unpadded(paths[index::count]), segment, flat, is_first=index == 0)
+        for index, (faded, segment) in enumerate(zip(self.clock.faded_segments, self._segments, strict=True)):
+            some = paths.of_segment(faded.source, count, faded.frame, faded.late_s)
+            self._add_segment(unpadded(some), segment, flat, is_first=index == 0)
         return self._elements.decoded(values.transpose(2, 3).contiguous())
 
     def _add_segment(self, paths: Paths, segment: "_SegmentDoppler", values: Tensor, *, is_first: bool) -> None:
@@ -217,6 +221,20 @@ class CubeRenderer:
         kernel, _ = self._range_kernel(self._range_bin - (length_m / (2 * config.range_resolution_m)).float()[:, None])
         turn = phasor(-config.chirp_slope_hz_per_s * delay_s**2 / 2)
         return (kernel * self._range_sign).to(torch.complex64) * turn[:, None]
+
+    def add_ramp(self, values: Tensor, layer: Tensor) -> None:
+        """Adds static layers that grow linearly from 0 at the start of a frame to the whole one frame period later.
+
+        Args:
+            values: Cube (frame, range, doppler, antenna), complex64, changed in place.
+            layer: Layers (frame, range, antenna).
+        """
+        if self._static_mixing is not None:  # coded transmitters: the mean over the frame
+            self.add_static(values, layer * float(np.mean(self.clock.chirp_s) / self.config.frame_period_s))
+            return
+        size = self._ramp_doppler.abs().amax(dim=1)
+        bins = torch.nonzero(size > 1e-4 * self._static_doppler.abs().max())[:, 0]
+        values[:, :, bins] += layer[..., None, :] * self._ramp_doppler[bins]
 
     def add_static(self, values: Tensor, layer: Tensor) -> None:
         """Adds static layers to cube values, in place.

@@ -183,7 +183,8 @@ class SpecularReflector:
         return np.clip(weight, 0.0, 1.0)
 
     def coefficient(self, cos_incidence: Values, frequency_hz: float) -> Values:
-        """Specular reflection coefficient: that of the slab, reduced by diffuse scattering.
+        """Specular reflection coefficient: that of the slab, reduced by diffuse scattering, for a
+        wave along the horizon.
 
         Args:
             cos_incidence: Cosine (...) of the angle of incidence.
@@ -192,10 +193,13 @@ class SpecularReflector:
         Returns:
             Complex amplitude coefficient (...).
         """
+        polarisation = "tm" if abs(self.plane.normal[2]) > 0.7 else "te"
         smooth = self._smooth(cos_incidence, frequency_hz)
-        return smooth * reflection(self.material, cos_incidence, frequency_hz, polarisation=self.polarisation)
+        return smooth * reflection(self.material, cos_incidence, frequency_hz, polarisation=polarisation)
 
-    def echoes(self, cos_incidence: Values, frequency_hz: float, most: int = SLAB_ECHOES) -> SlabEchoes:
+    def both_echoes(
+        self, cos_incidence: Values, frequency_hz: float, most: int = SLAB_ECHOES
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """The reflection over the radar's band, as echoes of the slab's two surfaces in the phases of a beat signal.
 
         Args:
@@ -204,11 +208,35 @@ class SpecularReflector:
             most: Maximum number of echoes.
 
         Returns:
-            The echoes, reduced by diffuse scattering.
+            Coefficients (echo, ...) of the field across (TE) and in (TM) the plane of incidence, reduced by diffuse
+            scattering, and excess lengths (echo, ...) in metres.
         """
         smooth = self._smooth(cos_incidence, frequency_hz)
-        slab = slab_echoes(self.material, cos_incidence, frequency_hz, polarisation=self.polarisation, most=most)
-        return SlabEchoes(smooth * slab.coefficient, slab.longer_m)
+        te, tm = (
+            slab_echoes(self.material, cos_incidence, frequency_hz, polarisation=one, most=most) for one in ("te", "tm")
+        )
+        longest = max(te, tm, key=lambda one: len(one.coefficient))
+        fields = []
+        for slab in (te, tm):
+            field = np.zeros(longest.coefficient.shape, complex)
+            field[: len(slab.coefficient)] = smooth * slab.coefficient
+            fields.append(field)
+        return *fields, longest.longer_m
+
+    def echoes(self, direction: np.ndarray, frequency_hz: float, most: int = SLAB_ECHOES) -> SlabEchoes:
+        """Echoes of a vertically polarised wave, as an antenna of the same polarisation receives them.
+
+        Args:
+            direction: Unit vectors (..., 3) of the incident wave.
+            frequency_hz: Frequency in Hz at which the sum of the echoes is exact.
+            most: Maximum number of echoes.
+
+        Returns:
+            The echoes (echo, ...).
+        """
+        te, tm, longer_m = self.both_echoes(np.abs(direction @ self.plane.normal), frequency_hz, most)
+        across, along = polarised(direction, self.plane.normal)
+        return SlabEchoes(across * te + along * tm, longer_m)
 
     def _smooth(self, cos_incidence: Values, frequency_hz: float) -> Values:
         """Share of the reflected amplitude that is specular."""
@@ -230,10 +258,44 @@ class SpecularReflector:
     def material(self) -> Material:
         return MATERIALS[self.plane.material]
 
-    @property
-    def polarisation(self) -> str:
-        """Polarisation of a vertically polarised radar's wave relative to this face, "te" or "tm"."""
-        return "tm" if abs(self.plane.normal[2]) > 0.7 else "te"
+
+def vertical_field(direction: np.ndarray) -> np.ndarray:
+    """Unit field vectors (..., 3) of a vertically polarised antenna, for unit directions (..., 3) of travel."""
+    return unit(np.array([0.0, 0.0, 1.0]) - direction[..., 2:] * direction)
+
+
+def incidence_axes(direction: np.ndarray, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Axes of the field at a reflection.
+
+    Args:
+        direction: Unit vectors (..., 3) of the incident wave.
+        normal: Unit normals (..., 3) of the face.
+
+    Returns:
+        Unit vectors (..., 3) across the plane of incidence, and in it before and after the reflection. Straight on,
+        where any plane of incidence does, the one across the vertical field.
+    """
+    across = np.cross(direction, normal)
+    straight = np.linalg.norm(across, axis=-1, keepdims=True) < 1e-6
+    across = unit(np.where(straight, np.cross(vertical_field(direction), direction), across))
+    after = direction - 2 * (direction * normal).sum(-1, keepdims=True) * normal
+    return across, np.cross(across, direction), np.cross(across, after)
+
+
+def polarised(direction: np.ndarray, normal: np.ndarray) -> tuple[Values, Values]:
+    """Weights of the TE and the TM reflection of a vertically polarised wave that is received as such.
+
+    Args:
+        direction: Unit vectors (..., 3) of the incident wave.
+        normal: Unit normals (..., 3), of either sign.
+
+    Returns:
+        Weights (...) of the amplitude coefficients; at a wall along the horizon 1 and 0, at the floor 0 and 1.
+    """
+    across, before, after = incidence_axes(direction, normal)
+    gone = direction - 2 * (direction * normal).sum(-1, keepdims=True) * normal
+    sent, received = vertical_field(direction), vertical_field(gone)
+    return (sent * across).sum(-1) * (across * received).sum(-1), (sent * before).sum(-1) * (after * received).sum(-1)
 
 
 def specular_reflectors(
@@ -334,16 +396,22 @@ def _path(
         return None
     length = float(np.linalg.norm(images[-1]))
     tapers, end, gone = [], np.zeros(3), 0.0
-    echoes = SlabEchoes(np.ones(1, complex), np.zeros(1))
+    field, longer_m = vertical_field(unit(corners[0]))[None].astype(complex), np.zeros(1)
     for face, image, corner in zip(reversed(faces), reversed(images[1:]), corners, strict=True):
         gone += float(np.linalg.norm(corner - end))
         fresnel_m = fresnel_radius_m(np.array(gone), np.array(length - gone), wavelength_m)
         tapers.append(float(face.inside(corner, fresnel_m)))
-        cos = np.abs(unit(image - end) @ face.plane.normal)
-        echoes = echoes.combined(face.echoes(cos, frequency_hz, most), frequency_hz)
+        direction = unit(image - end)
+        te, tm, own_m = face.both_echoes(np.abs(direction @ face.plane.normal), frequency_hz, most)
+        across, before, after = incidence_axes(direction, face.plane.normal)
+        field = np.multiply.outer(field @ across, te)[..., None] * across + (
+            np.multiply.outer(field @ before, tm)[..., None] * after
+        )
+        slab = SlabEchoes(field.reshape(-1, 3), np.add.outer(longer_m, own_m).ravel()).merged(frequency_hz)
+        field, longer_m = slab.coefficient, slab.longer_m
         end = corner
     share = _share_of_wave(np.array(corners), min(tapers), length)
-    echoes = SlabEchoes(share * echoes.coefficient, echoes.longer_m)
+    echoes = SlabEchoes(share * (field @ vertical_field(unit(-end))), longer_m)
     if abs(echoes.coefficient).max() < 1e-5:
         return None
     rotation = np.eye(3)

@@ -161,20 +161,19 @@ class SlabEchoes:
         """The sum (...) of the echoes at a frequency in Hz."""
         return (self.coefficient * np.exp(2j * np.pi * frequency_hz * self.longer_m / SPEED_OF_LIGHT_MPS)).sum(axis=0)
 
-    def combined(self, other: "SlabEchoes", frequency_hz: float) -> "SlabEchoes":
-        """Echoes of one wave that meets two slabs; negligible ones are added to the strongest.
+    def merged(self, frequency_hz: float) -> "SlabEchoes":
+        """These echoes, fields (echo, 3) with lengths (echo,), with negligible ones added to the strongest.
 
         Args:
-            other: Echoes (echo,) of the other slab; these are (echo,), too.
             frequency_hz: Frequency in Hz at which the sum stays exact.
         """
-        coefficient = np.multiply.outer(self.coefficient, other.coefficient).ravel()
-        longer_m = np.add.outer(self.longer_m, other.longer_m).ravel()
-        strongest = np.abs(coefficient).argmax()
-        kept = np.abs(coefficient) >= MIN_ECHO_SHARE * np.abs(coefficient[strongest])
+        field, longer_m = self.coefficient.copy(), self.longer_m
+        size = np.linalg.norm(field, axis=1)
+        strongest = size.argmax()
+        kept = size >= MIN_ECHO_SHARE * size[strongest]
         turn = np.exp(2j * np.pi * frequency_hz * (longer_m - longer_m[strongest]) / SPEED_OF_LIGHT_MPS)
-        coefficient[strongest] += (coefficient * turn)[~kept].sum()
-        return SlabEchoes(coefficient[kept], longer_m[kept])
+        field[strongest] += (field * turn[:, None])[~kept].sum(axis=0)
+        return SlabEchoes(field[kept], longer_m[kept])
 
 
 def slab_echoes(

@@ -6,7 +6,7 @@ the receiver's port in sqrt(mW), without the phase of the carrier, exp(j 2 pi le
 Times of the chirps within a frame, and the time segments within which motion is quadratic.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from functools import cached_property
 
@@ -24,10 +24,17 @@ BLOCK_S = 2.5e-3  # range is linear in time within a block; array phases are int
 
 @dataclass(frozen=True, kw_only=True)
 class FadedSegment:
-    """A segment that reaches to the middles of its neighbours, with a weight per chirp; all weights add up to 1."""
+    """A segment that reaches to the middles of its neighbours, with a weight per chirp; all weights add up to 1.
+
+    Where frames follow each other without a pause, the last segment of the frame before and the first of the frame
+    after reach into a frame, too.
+    """
 
     segment: "Segment"
     share: np.ndarray  # (loop, tx) from 0 to 1
+    source: int  # number of the segment within its frame
+    frame: int = 0  # -1, 0 or 1: its frame relative to the one into which it reaches
+    late_s: float = 0.0  # its middle minus that of the nearest segment of the frame itself
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,16 +118,32 @@ class FrameClock:
         Where motion and amplitude are known per segment only, paths jump from one segment to the next. A jump leaves
         spurs over all velocities; a smooth transition does not.
         """
-        middle_s = self.middle_s
-        before, after = (np.append(-np.inf, middle_s[:-1]), np.append(middle_s[1:], np.inf))
+        middle_s, period_s, last = self.middle_s, self.config.frame_period_s, len(self.segments) - 1
+        own = [(at, 0, float(one_s)) for at, one_s in enumerate(middle_s)]
+        if self.is_continuous:
+            own = [(last, -1, middle_s[-1] - period_s), *own, (0, 1, middle_s[0] + period_s)]
+        times = np.array([one_s for *_, one_s in own])
+        before, after = (np.append(-np.inf, times[:-1]), np.append(times[1:], np.inf))
         faded = []
-        for own_s, from_s, to_s in zip(middle_s, before, after, strict=True):
+        for (source, frame, own_s), from_s, to_s in zip(own, before, after, strict=True):
             reached = np.flatnonzero(((self.chirp_s > from_s) & (self.chirp_s < to_s)).any(axis=1))
             time_s = self.chirp_s[reached]
             away = np.where(time_s < own_s, (own_s - time_s) / (own_s - from_s), (time_s - own_s) / (to_s - own_s))
             share = np.cos(np.pi / 2 * np.clip(away, 0.0, 1.0)) ** 2
-            faded.append(FadedSegment(segment=self._segment(reached, float(own_s)), share=share))
-        return tuple(faded)
+            late_s = float(own_s - middle_s[{-1: 0, 0: source, 1: last}[frame]])
+            faded.append(
+                FadedSegment(
+                    segment=self._segment(reached, float(own_s)), share=share, source=source, frame=frame, late_s=late_s
+                )
+            )
+        return tuple(one for one in faded if len(one.share))
+
+    @property
+    def is_continuous(self) -> bool:
+        """Whether the pause between frames is so short that motion is continuous over it."""
+        return self.config.frame_period_s - self.config.active_time_s < min(
+            MAX_SEGMENT_S, self.config.active_time_s / 2
+        )
 
     def _segment(self, loops: np.ndarray, middle_s: float | None = None) -> Segment:
         """A run of loops; times are relative to the middle of its chirps, or to `middle_s`."""
@@ -160,6 +183,8 @@ class Interaction(IntEnum):
     ROOM_ROOM = 8  # two surfaces of the room, at least one of them rough
     CLUTTER = 9  # something in the room that photo and mesh do not resolve
     BODY_BODY = 10  # two people, one after the other
+    TARGET = 11  # a reflector of known cross section
+    THING = 12  # something that moves but is nobody
 
 
 STATIC_KINDS = (Interaction.DIFFUSE, Interaction.SPECULAR, Interaction.EDGE)  # of first order, as a room has them
@@ -200,6 +225,14 @@ class ApparentPoint(TensorRecord):
         )
         time = time_s[:, None, None]
         return (acceleration * (time**2 / 2)).addcmul_(velocity, time).add_(position)
+
+    def later(self, time_s: float) -> "ApparentPoint":
+        """The same motion about another middle, `time_s` seconds later."""
+        return ApparentPoint(
+            position_m=self.position_m + time_s * self.velocity_mps + time_s**2 / 2 * self.acceleration_mps2,
+            velocity_mps=self.velocity_mps + time_s * self.acceleration_mps2,
+            acceleration_mps2=self.acceleration_mps2,
+        )
 
     @property
     def distance_m(self) -> Tensor:
@@ -309,6 +342,24 @@ class Paths(TensorRecord):
         nothing = np.zeros((0, 3, 3))
         return cls.of(np.zeros(0), nothing, nothing, Interaction.BODY)
 
+    def of_segment(self, source: int, count: int, frame: int = 0, late_s: float = 0.0) -> "Paths":
+        """Paths (frame, path) of one time segment of every frame, or of the frames before or after.
+
+        Where there is no frame before or after, the motion of the nearest segment goes on.
+
+        Args:
+            source: Number of the segment.
+            count: Number of segments per frame.
+            frame: -1, 0 or 1: which frames' segments, relative to every frame.
+            late_s: Middle of the segment minus that of the nearest segment of the frame itself.
+        """
+        rows = self[source::count]
+        if not frame:
+            return rows
+        nearest = self[:1] if frame < 0 else self[-1:]
+        edge = replace(nearest, departure=nearest.departure.later(late_s), arrival=nearest.arrival.later(late_s))
+        return Paths.cat([edge, rows[:-1]]) if frame < 0 else Paths.cat([rows[1:], edge])
+
     def __len__(self) -> int:
         return len(self.amplitude)
 
@@ -382,4 +433,6 @@ class ScenePaths:
 
     static: StaticPaths  # (path,)
     moving: Paths  # (frame * segment, path)
-    occluded: Tensor  # (frame, static path) uint8: 1 where a person occludes the path
+    # (frame + 1, static path): share of a path's amplitude that people take, at the first node of each frame and one
+    # frame period later, linear between; or (frame, static path), constant within a frame
+    occluded: Tensor

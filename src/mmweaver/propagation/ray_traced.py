@@ -19,7 +19,7 @@ from mmweaver.core.board import Board
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PoseSequence, RadarCube, Scene
-from mmweaver.motion.micro_motion import MicroMotion, MicroMotionSettings
+from mmweaver.motion.physiology import Physiology, PhysiologySettings
 from mmweaver.propagation.adc_synthesis import AdcSynthesis, one_thread
 from mmweaver.propagation.board_effects import BoardEffects
 from mmweaver.propagation.body_model import DEFAULT_NUM_POINTS, ScatteringBody, body_of
@@ -27,8 +27,9 @@ from mmweaver.propagation.body_paths import BodyPaths
 from mmweaver.propagation.cube_rendering import CubeRenderer
 from mmweaver.propagation.diffuse_clutter import diffuse_clutter
 from mmweaver.propagation.image_method import static_points
+from mmweaver.propagation.interference import interference
 from mmweaver.propagation.mean_power import MeanPower
-from mmweaver.propagation.occlusion import Visibility
+from mmweaver.propagation.occlusion import Visibility, people_shadow
 from mmweaver.propagation.paths import FrameClock, Interaction, Paths, ScenePaths, StaticPaths
 from mmweaver.propagation.receiver import (
     LEAKAGE_PATH_LENGTH_M,
@@ -41,7 +42,8 @@ from mmweaver.propagation.receiver import (
 from mmweaver.propagation.second_order import BodyBodyPaths
 from mmweaver.propagation.skin_scattering import SkinEcho
 from mmweaver.propagation.static_paths import Propagation, RayTracedRoom
-from mmweaver.propagation.visible_body import hulls_of, occluded_by
+from mmweaver.propagation.things import ThingPaths, reflector_paths
+from mmweaver.propagation.visible_body import hulls_of
 from mmweaver.signal.cube import static_samples
 
 
@@ -57,7 +59,8 @@ class PeoplePaths:
         bodies: list[ScatteringBody],
         clock: FrameClock,
         joints_m: list[np.ndarray],
-        chests_m: list[np.ndarray] | None = None,
+        trunks_m: list[np.ndarray] | None = None,
+        starts_m: list[np.ndarray] | None = None,
     ):
         """Poses all people, and determines which paths are clear.
 
@@ -66,13 +69,17 @@ class PeoplePaths:
             bodies: Skin points of each person; may be empty.
             clock: Clock of the radar's frame.
             joints_m: Joints (frame, node, 22, 3) in metres of each person, at the clock's nodes.
-            chests_m: Outward displacement of the chest (frame, node) in metres of each person; by default none.
+            trunks_m: Outward displacement of chest and belly (frame, node, 2) in metres of each person; by default
+                none.
+            starts_m: Joints (frame + 1, 22, 3) in metres of each person at the start of each frame and after the last,
+                where they occlude the room; by default as in the middle of each frame.
         """
+        self.starts_m = [own[:, own.shape[1] // 2] for own in joints_m] if starts_m is None else starts_m
         self.room, self.num_segments = room, len(clock.segments)
         self.hulls = hulls_of(bodies, joints_m) if bodies else []
         self.each = [
-            BodyPaths(room, body, clock, own, chest, self.hulls)
-            for body, own, chest in zip(bodies, joints_m, chests_m or [None] * len(bodies), strict=True)
+            BodyPaths(room, body, clock, own, trunk, self.hulls)
+            for body, own, trunk in zip(bodies, joints_m, trunks_m or [None] * len(bodies), strict=True)
         ]
         seconds = [one.second for one in self.each if one.second is not None]
         self.between = [BodyBodyPaths(*pair) for pair in combinations(seconds, 2)]
@@ -84,10 +91,7 @@ class PeoplePaths:
             num_frames: Number of frames, from the first.
         """
         segments = [paths for frame in range(num_frames) for paths in self.paths(frame)]
-        occluded = np.stack([self.occluded(frame) for frame in range(num_frames)])
-        return ScenePaths(
-            static=self.room.paths, moving=Paths.padded(segments), occluded=torch.from_numpy(occluded.astype(np.uint8))
-        )
+        return ScenePaths(static=self.room.paths, moving=Paths.padded(segments), occluded=self.occluded(num_frames))
 
     def paths(self, frame: int) -> list[Paths]:
         """All paths over people in one frame, one record (path,) per time segment."""
@@ -97,13 +101,11 @@ class PeoplePaths:
             each.append([paths[index] for index in range(self.num_segments)])
         return [Paths.cat(parts) for parts in zip(*each, strict=True)] if each else [Paths.none()] * self.num_segments
 
-    def occluded(self, frame: int) -> np.ndarray:
-        """Mask (path,) of the static paths that any person occludes in one frame."""
-        found = np.zeros(len(self.room.paths), bool)
-        if self.each:
-            near = np.unique(np.concatenate([one.occludable(frame) for one in self.each]))
-            found[occluded_by(self.hulls[frame], self.room.paths, near)] = True
-        return found
+    def occluded(self, num_frames: int) -> torch.Tensor:
+        """Share of each static path's amplitude that people take, as `ScenePaths.occluded`."""
+        if not self.starts_m:
+            return torch.zeros(num_frames, len(self.room.paths))
+        return people_shadow(self.room.paths, self.starts_m, self.room.config.wavelength_m)
 
 
 CHUNK_FRAMES = 20  # frames per chunk, which bounds memory
@@ -173,7 +175,11 @@ class Simulator:
         self.clock = self.synthesis.clock
         self.room = (room or RayTracedRoom(scene, built, micro_seed, propagation)).for_radar(built)
         if self.room.propagation.clutter:
-            self.room.paths = StaticPaths.cat([self.room.paths, diffuse_clutter(built, micro_seed)])
+            self.room.paths = StaticPaths.cat([self.room.paths, diffuse_clutter(built, micro_seed, scene)])
+        if scene.reflectors:
+            reflectors = reflector_paths(scene.reflectors, scene.radar_pose, built)
+            self.room.paths = StaticPaths.cat([self.room.paths, reflectors])
+        self.things, self.interferers = ThingPaths(scene, built), scene.interferers
         if self.board is not None:
             self.room.paths = self.board.recorded_static(self.room.paths)
         self.background: BackgroundRecording | None = None
@@ -242,7 +248,7 @@ class Simulator:
         first_frame: int = 0,
         num_points: int = DEFAULT_NUM_POINTS,
         echo: SkinEcho | None = None,
-        motions: MicroMotionSettings | None = None,
+        motions: PhysiologySettings | None = None,
     ) -> Iterator[AdcCube]:
         """ADC samples of the posed people, at most CHUNK_FRAMES frames at a time.
 
@@ -270,11 +276,12 @@ class Simulator:
         bodies = [body_of(one, num_points, echo) for one in poses]
         receiver = self._receiver(seed)
         unit = 1.0 if self.background is None else self.background.unit
-        micro_motions = [MicroMotion(one.subject, seed, motions or MicroMotionSettings()) for one in poses]
+        living = [Physiology.of(one, seed, motions) for one in poses]
         for first in range(first_frame, first_frame + num_frames, CHUNK_FRAMES):
             frames = np.arange(first, min(first + CHUNK_FRAMES, first_frame + num_frames))
-            people = self._people(poses, bodies, micro_motions, frames)
-            samples = self.samples(people.scene(len(frames)), frames, receiver).numpy()
+            paths = self._people(poses, bodies, living, frames).scene(len(frames))
+            paths = self.things.added(paths, frames, self.clock, self.room)
+            samples = self.samples(paths, frames, receiver).numpy()
             samples = samples if unit == 1.0 else samples / np.float32(unit)
             yield AdcCube(samples=samples, config=self.config, scale=unit)
 
@@ -290,11 +297,16 @@ class Simulator:
             Samples (frame, loop, tx, rx, sample), complex64, in sqrt(mW).
         """
         with one_thread():
-            static, moving = self._static - self.synthesis.occluded(paths), paths.moving
+            static, moving = self._static.expand(len(frames), *self._static.shape), paths.moving
             if self.board is not None:
                 static = static + self._drifted(frames, receiver.seed)
                 moving = self.board.recorded_moving(moving, frames, receiver.seed)
-            return receiver.receive(self.synthesis.moving(moving), static, self._static_rate, frames.tolist())
+            samples = self.synthesis.moving(moving)
+            self.synthesis.subtract_occluded(samples, paths)
+            if self.interferers:
+                own = interference(self.interferers, self.radar_pose, self.config, frames, receiver.seed)
+                samples += torch.from_numpy(own)
+            return receiver.receive(samples, static, self._static_rate, frames.tolist())
 
     def _drifted(self, frames: np.ndarray, seed: int) -> torch.Tensor:
         """Change of the static samples by the carrier's drift, (frame, tx, rx, sample)."""
@@ -310,23 +322,25 @@ class Simulator:
             seed: Seed of the signal.
         """
         bodies = [body_of(one) for one in poses]
-        micro_motions = [MicroMotion(one.subject, seed, MicroMotionSettings()) for one in poses]
-        return self._people(poses, bodies, micro_motions, np.array([frame])).scene(1)
+        living = [Physiology.of(one, seed) for one in poses]
+        return self._people(poses, bodies, living, np.array([frame])).scene(1)
 
     def _people(
         self,
         poses: tuple[PoseSequence, ...],
         bodies: list[ScatteringBody],
-        micro_motions: list[MicroMotion],
+        living: list[Physiology],
         frames: np.ndarray,
     ) -> PeoplePaths:
-        joints_m, chests_m = [], []
-        for pose, own in zip(poses, micro_motions, strict=True):
+        joints_m, trunks_m, starts_m = [], [], []
+        start_s = np.append(frames, frames[-1] + 1) * self.config.frame_period_s + self.clock.node_s[0]
+        for pose, own in zip(poses, living, strict=True):
             level_m = self.radar_pose.in_level_frame(self._joints_at_nodes(pose, frames))
-            joints, chest = add_micro_motion(own, level_m, frames, self.clock, pose.height_m)
+            joints, trunk = add_physiology(own, level_m, frames, self.clock, pose.height_m)
             joints_m.append(self.radar_pose.seen(joints))
-            chests_m.append(chest)
-        return PeoplePaths(self.room, bodies, self.clock, joints_m, chests_m)
+            trunks_m.append(trunk)
+            starts_m.append(_joints_at(pose, start_s))
+        return PeoplePaths(self.room, bodies, self.clock, joints_m, trunks_m, starts_m)
 
     def trace(self, pose: PoseSequence, *, num_frames: int, seed: int) -> tuple[np.ndarray, Visibility]:
         """Casts the rays of a motion, for `Resynthesis`.
@@ -345,21 +359,16 @@ class Simulator:
         self._check(pose, num_frames)
         frames = np.arange(num_frames)
         joints_m = self._joints_at_nodes(pose, frames).astype(np.float32)
-        own = MicroMotion(pose.subject, seed, MicroMotionSettings())
-        moved, chest = add_micro_motion(own, joints_m.astype(float), frames, self.clock, pose.height_m)
-        return joints_m, BodyPaths(self.room, body_of(pose), self.clock, moved, chest).visibility()
+        own = Physiology.of(pose, seed)
+        moved, trunk = add_physiology(own, joints_m.astype(float), frames, self.clock, pose.height_m)
+        return joints_m, BodyPaths(self.room, body_of(pose), self.clock, moved, trunk).visibility()
 
     def _joints_at_nodes(self, pose: PoseSequence, frames: np.ndarray) -> np.ndarray:
         """Joints (frame, node, 22, 3), interpolated in slow time.
 
         A frame that begins with the last pose continues at its velocity; holding the pose would freeze the person.
         """
-        times = frames[:, None] * self.config.frame_period_s + self.clock.node_s[None, :]
-        spline = CubicSpline(pose.time_s, pose.joints_m, axis=0)
-        last_s = pose.time_s[-1]
-        joints = spline(np.clip(times, pose.time_s[0], last_s))
-        beyond_s = np.maximum(times - last_s, 0.0)
-        return joints + beyond_s[..., None, None] * spline(last_s, 1) if beyond_s.any() else joints
+        return _joints_at(pose, frames[:, None] * self.config.frame_period_s + self.clock.node_s[None, :])
 
     def _check(self, pose: PoseSequence, num_frames: int, first_frame: int = 0) -> None:
         begin_s = first_frame * self.config.frame_period_s
@@ -373,24 +382,33 @@ class Simulator:
             raise InputError("the motion has joints that are not numbers; mend the pose file")
 
 
-def add_micro_motion(
-    motion: MicroMotion, joints_m: np.ndarray, frames: np.ndarray, clock: FrameClock, height_m: float
+def _joints_at(pose: PoseSequence, time_s: np.ndarray) -> np.ndarray:
+    """Joints (..., 22, 3) at times (...); after the motion's end they continue at its last velocity."""
+    spline, last_s = CubicSpline(pose.time_s, pose.joints_m, axis=0), pose.time_s[-1]
+    joints = spline(np.clip(time_s, pose.time_s[0], last_s))
+    beyond_s = np.maximum(time_s - last_s, 0.0)
+    return joints + beyond_s[..., None, None] * spline(last_s, 1) if beyond_s.any() else joints
+
+
+def add_physiology(
+    motion: Physiology, joints_m: np.ndarray, frames: np.ndarray, clock: FrameClock, height_m: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Adds a person's micro-motion.
+    """Adds a person's sway, tremor, breathing and heartbeat.
 
     Args:
-        motion: Micro-motion of the person.
+        motion: Physiology of the person.
         joints_m: Joints (frame, node, 22, 3) in metres at the nodes of frames.
         frames: Frame numbers (frame,).
         clock: Clock of the radar's frame.
         height_m: Body height in metres.
 
     Returns:
-        Joints with micro-motion, and the outward displacement of the chest (frame, node) in metres.
+        Joints that sway and tremble, and the outward displacement of chest and belly (frame, node, 2) in metres.
     """
     time_s = (frames[:, None] * clock.config.frame_period_s + clock.node_s[None, :]).ravel()
-    moved = motion.moved(joints_m.reshape(-1, *joints_m.shape[2:]), time_s, height_m)
-    return moved.reshape(joints_m.shape), motion.chest_m(time_s).reshape(joints_m.shape[:2])
+    flat = joints_m.reshape(-1, *joints_m.shape[2:])
+    moved, trunk_m = motion.moved(flat, time_s, height_m), motion.trunk_m(flat, time_s, height_m)
+    return moved.reshape(joints_m.shape), trunk_m.reshape(*joints_m.shape[:2], 2)
 
 
 def leakage_path(config: RadarConfig, impairments: Impairments) -> StaticPaths:

@@ -211,9 +211,12 @@ class Receiver:
         # rms of either part of a sample's noise, and of a sample's shift in time by phase noise
         self.noise_sqrt_mw = float(np.sqrt(config.noise_power_mw / 2)) if impairments.thermal_noise else 0.0
         self.phase_noise_s = 0.0
-        if impairments.phase_noise_dbc_per_hz is not None:
+        level_dbc = impairments.phase_noise_dbc_per_hz
+        if board is not None and board.board.phase_noise_dbc_per_hz is not None:
+            level_dbc = board.board.phase_noise_dbc_per_hz
+        if level_dbc is not None:
             # S_f = f^2 S_phi = (1 MHz)^2 . 2 L, white up to half the sample rate
-            density = 2e12 * 10 ** (impairments.phase_noise_dbc_per_hz / 10)
+            density = 2e12 * 10 ** (level_dbc / 10)
             deviation_hz = np.sqrt(density * config.sample_rate_hz / 2)
             self.phase_noise_s = float(deviation_hz / config.chirp_slope_hz_per_s)
 
@@ -270,6 +273,8 @@ class Receiver:
             samples[:, 0, self.board.first_slot] *= self.board.first_chirp
         if noise is not None:
             samples += noise
+        if self.board is not None and self.board.iq_image and self.config.complex_samples:
+            samples += self.board.iq_image * samples.conj()
         if not self.config.complex_samples:
             torch.view_as_real(samples)[..., 1] = 0.0
         if self.impairments.quantise:

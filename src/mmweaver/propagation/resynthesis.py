@@ -14,13 +14,13 @@ from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
-from mmweaver.motion.micro_motion import MicroMotion, MicroMotionSettings
+from mmweaver.motion.physiology import Physiology
 from mmweaver.propagation.adc_synthesis import AdcSynthesis
 from mmweaver.propagation.body_model import ScatteringBody
 from mmweaver.propagation.body_paths import BodyPaths
-from mmweaver.propagation.occlusion import Visibility
+from mmweaver.propagation.occlusion import Visibility, people_shadow
 from mmweaver.propagation.paths import Paths, ScenePaths
-from mmweaver.propagation.ray_traced import add_micro_motion, leakage_path
+from mmweaver.propagation.ray_traced import add_physiology, leakage_path
 from mmweaver.propagation.receiver import Impairments, Receiver
 from mmweaver.propagation.static_paths import PreparedRoom
 from mmweaver.propagation.static_paths_store import resampled_phases
@@ -73,18 +73,33 @@ class Resynthesis:
             body = _rephased(body, stream(motion.subject, "body", "other phases", realization))
         person = self._person(room, body, motion, frames)
         moving = Paths.padded([paths for index in range(len(frames)) for paths in person.paths(index)])
-        occluded = torch.from_numpy(motion.visibility.occluded[frames])
+        occluded = people_shadow(room.paths, [self._starts_m(motion, frames)], self.config.wavelength_m)
         paths = ScenePaths(static=room.paths, moving=moving, occluded=occluded)
+        moving = self.synthesis.moving(paths.moving)
+        self.synthesis.subtract_occluded(moving, paths)
         seed = motion.seed if realization == 0 else int(stream(motion.seed, "twin", realization).integers(2**31))
         on_device = bool(realization) and self.synthesis.device.type != "cpu"
         receiver = Receiver(self.config, self.impairments, seed)
         return receiver.receive(
-            self.synthesis.moving(paths.moving),
-            static - self.synthesis.occluded(paths),
+            moving,
+            static.expand(len(frames), *static.shape),
             rate,
             frames.tolist(),
             on_device=on_device,
         )
+
+    def _starts_m(self, motion: TracedMotion, frames: np.ndarray) -> np.ndarray:
+        """Joints at the first node of each frame, of successive frames also one frame period later (`ScenePaths`)."""
+        starts_m = motion.joints_m[frames, 0]
+        if (np.diff(frames) != 1).any():
+            return starts_m
+        after, nodes_s = int(frames[-1]) + 1, self.synthesis.clock.node_s
+        if after < len(motion.joints_m):
+            last_m = motion.joints_m[after, 0]
+        else:
+            first_m, end_m = motion.joints_m[-1, 0], motion.joints_m[-1, -1]
+            last_m = first_m + (end_m - first_m) * (self.config.frame_period_s / (nodes_s[-1] - nodes_s[0]))
+        return np.concatenate([starts_m, last_m[None]])
 
     def person(self, motion: TracedMotion, frames: np.ndarray) -> BodyPaths:
         """Paths of the person, and the static paths that the person occludes.
@@ -96,12 +111,12 @@ class Resynthesis:
         return self._person(self.room, _body(motion.subject, motion.height_m), motion, frames)
 
     def _person(self, room: PreparedRoom, body: ScatteringBody, motion: TracedMotion, frames: np.ndarray) -> BodyPaths:
-        micro_motion = MicroMotion(motion.subject, motion.seed, MicroMotionSettings())
-        joints_m, chest_m = add_micro_motion(
-            micro_motion, motion.joints_m[frames].astype(float), frames, self.synthesis.clock, motion.height_m
+        own = Physiology(motion.subject, motion.seed)
+        joints_m, trunk_m = add_physiology(
+            own, motion.joints_m[frames].astype(float), frames, self.synthesis.clock, motion.height_m
         )
         known = motion.visibility[frames]
-        return BodyPaths(room, body, self.synthesis.clock, joints_m, chest_m, known=known)
+        return BodyPaths(room, body, self.synthesis.clock, joints_m, trunk_m, known=known)
 
     def _room(self, realization: int) -> tuple[PreparedRoom, Tensor, Tensor]:
         key = 1 + realization % ROOM_REALIZATIONS if realization else 0

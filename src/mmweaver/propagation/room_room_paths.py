@@ -67,7 +67,7 @@ def _face_amplitudes(
     to_corner = (corner_m - place_m) / behind_m[:, None]
     share = face.inside(corner_m, fresnel_radius_m(corner_distance, behind_m, config.wavelength_m))
     share = share * (np.asarray(face.side(place_m)) > FACE_MARGIN_M)
-    coefficient = np.conj(face.coefficient(np.abs(to_corner @ face.plane.normal), config.centre_frequency_hz))
+    coefficient = face.echoes(to_corner, config.centre_frequency_hz, 1).coefficient[0]
     gains = pattern(unit(place_m), config) * pattern(unit(corner_m), config)
     size = scatterer_gain(config) * gains * np.sqrt(patches.cross_sections(to_corner))
     size /= np.linalg.norm(place_m, axis=1) * image_distance

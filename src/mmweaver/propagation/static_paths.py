@@ -16,7 +16,14 @@ from mmweaver.core.shapes import Values
 from mmweaver.core.tensor_files import TensorRecord
 from mmweaver.propagation.antenna import pattern, scatterer_gain, specular_gain
 from mmweaver.propagation.edge_scattering import find_edges
-from mmweaver.propagation.image_method import SLAB_ECHOES, SpecularReflector, specular_paths, specular_reflectors
+from mmweaver.propagation.image_method import (
+    SLAB_ECHOES,
+    SpecularReflector,
+    incidence_axes,
+    specular_paths,
+    specular_reflectors,
+    vertical_field,
+)
 from mmweaver.propagation.materials import MATERIALS, Material, mean_reflectivity, transmission
 from mmweaver.propagation.paths import STATIC_KINDS, Interaction, StaticPaths
 from mmweaver.propagation.room_patches import RoomPatches
@@ -91,11 +98,12 @@ class _Struck(TensorRecord):
 
     def share(self, names: tuple[str, ...], of_material: Callable[[Material, np.ndarray, str], Values]) -> np.ndarray:
         """Power shares (ray,), a function of the material, the cosine of incidence and the polarisation."""
-        is_flat, share = np.abs(self.normal[:, 2]) > 0.7, np.zeros(len(self.cos))
+        across = (vertical_field(self.direction) * incidence_axes(self.direction, self.normal)[0]).sum(axis=1) ** 2
+        share = np.zeros(len(self.cos))
         for index, name in enumerate(names):
-            for flat, polarisation in ((True, "tm"), (False, "te")):
-                some = (self.material == index) & (is_flat == flat)
-                share[some] = of_material(MATERIALS[name], self.cos[some], polarisation)
+            some = self.material == index
+            te, tm = (of_material(MATERIALS[name], self.cos[some], one) for one in ("te", "tm"))
+            share[some] = across[some] * te + (1 - across[some]) * tm
         return share
 
 

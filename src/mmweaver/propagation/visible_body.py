@@ -27,7 +27,7 @@ class BodyAtFrames:
         body: ScatteringBody,
         clock: FrameClock,
         joints_m: np.ndarray,
-        chest_m: np.ndarray | None,
+        trunk_m: np.ndarray | None,
         hulls: list[RayCaster] | None = None,
     ) -> "BodyAtFrames":
         """Poses a body.
@@ -36,12 +36,12 @@ class BodyAtFrames:
             body: The skin points.
             clock: Clock of the radar's frame.
             joints_m: Joints (frame, node, 22, 3) in metres at the clock's nodes.
-            chest_m: Outward displacement of the chest (frame, node) in metres; None for none.
+            trunk_m: Outward displacement of chest and belly (frame, node, 2) in metres; None for none.
             hulls: Meshes of this body and all others that may occlude it, one per frame; by default the body's own.
                 With an empty list no rays are cast.
         """
         frames, nodes = joints_m.shape[:2]
-        skin = body.skin(joints_m.reshape(-1, 22, 3), None if chest_m is None else chest_m.ravel())
+        skin = body.skin(joints_m.reshape(-1, 22, 3), None if trunk_m is None else trunk_m.reshape(-1, 2))
         places = skin.place_m.reshape(frames, nodes, -1, 3)
         normals = skin.normal.reshape(frames, nodes, -1, 3)
         return cls(

@@ -2,18 +2,19 @@
 
 They are known from a recording of the empty room or, without labels, from many recordings: cells with motion in
 nearly all of them that continues while people walk at least 1.2 m away. A person who exercises at one place in all
-recordings causes motion there, too; therefore a cell counts only if people walk elsewhere in some recordings.
+recordings causes motion there, too; therefore a cell counts only if people walk elsewhere in some recordings at the
+same time. Walking is a range that changes by a metre as the velocities say: neither noise nor a person's multipath,
+which is on the spot with its person, does that.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
 
 import numpy as np
 from jaxtyping import Bool, Int
 from scipy.ndimage import find_objects, label
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recordings import PointRecording, index_runs, is_moving
+from mmweaver.recognition.point_recordings import PointRecording, is_moving
 from mmweaver.recognition.quantisation import Quantisation, group_neighbours
 
 CELL_M = 0.25
@@ -22,8 +23,10 @@ AROUND = np.stack(np.meshgrid([-1, 0, 1], [-1, 0, 1]), axis=-1).reshape(-1, 2)
 FEWEST, WALKERS = 10, 3  # minimum number of recordings, and of recordings in which a person walks elsewhere
 WALKING_SHARE = 0.15  # minimum share of the latter
 NEARLY_ALL, IN_FRAMES = 0.9, 0.05  # of the recordings; of a recording's frames
-APART_M, WALKED_M = 1.2, 1.0  # of a walker: distance from the cell, and extent in range (10th to 90th percentile)
+APART_M, WALKED_M = 1.2, 1.0  # of a walker: distance from the cell, and change of range
 STRETCH_S, GOES_ON, MOSTLY = 0.5, 0.5, 0.8  # length and share of the intervals with a walker; share of recordings
+COURSE_S, COURSE_SHARE = 3.0, 0.6  # of a walk: length, and minimum share of its frames with points
+RELATED, FOLLOWS = 0.9, (0.6, 1.6)  # correlation and slope of range over integrated velocity
 
 Cells = Int[np.ndarray, "_ 2"]  # right, ahead, in steps of CELL_M
 NO_CELLS: Cells = np.zeros((0, 2), int)
@@ -59,15 +62,14 @@ def persistent_motion_cells(recordings: Sequence[PointRecording], radar: Quantis
     return _dilated(cells[(walks >= max(WALKERS, WALKING_SHARE * len(recordings))) & often])
 
 
-def remove_motion(window: PointRecording, cells: Cells) -> PointRecording:
-    """The window without moving points in some cells.
+def moves_inside(window: PointRecording, cells: Cells) -> Bool[np.ndarray, " point"]:
+    """Mask (point,) of the moving points in some cells.
 
     Args:
         window: Points of one window.
         cells: Cells (cell, 2) in steps of CELL_M.
     """
-    hidden = is_moving(window.cloud) & _inside(_cells_of(window.cloud), cells)
-    return replace(window, cloud=window.cloud.select(~hidden)) if hidden.any() else window
+    return is_moving(window.cloud) & _inside(_cells_of(window.cloud), cells)
 
 
 def left_out_lines(cells: Cells) -> list[str]:
@@ -83,7 +85,7 @@ def left_out_lines(cells: Cells) -> list[str]:
         right_m, ahead_m = (middle * CELL_M).round(1)
         where = f"{ahead_m:g} m ahead and {abs(right_m):g} m to the {'left' if right_m < 0 else 'right'}"
         lines.append(
-            f"something moves all the time {where}, also while people walk elsewhere: it is nobody and left out"
+            f"something moves all the time {where}, also while people walk elsewhere at the same time: it is left out"
         )
     return lines
 
@@ -116,57 +118,29 @@ def _goes_on(recording: PointRecording, candidates: Cells) -> np.ndarray:
     persistent = _inside(cell, _dilated(candidates))
     shares = np.full(len(candidates), np.nan)
     for number, candidate in enumerate(candidates):
-        walker = (np.hypot(*(point_m - (candidate + 0.5) * CELL_M).T) > APART_M) & ~persistent
-        if walker.sum() >= 2 and np.ptp(np.quantile(cloud.range_m[walker], [0.1, 0.9])) >= WALKED_M:
+        elsewhere = (np.hypot(*(point_m - (candidate + 0.5) * CELL_M).T) > APART_M) & ~persistent
+        walks = np.flatnonzero(elsewhere)[_walks(cloud.select(elsewhere), recording.frame_rate_hz)]
+        if len(walks):
             around = np.abs(cell - candidate).max(axis=1) <= 1
-            shares[number] = np.isin(np.unique(stretch[walker]), stretch[around]).mean()
+            shares[number] = np.isin(np.unique(stretch[walks]), stretch[around]).mean()
     return shares
 
 
-AT_ONCE_S = 0.15
-MULTIPATH_GROUP_M = 0.8  # distance within which points belong to the same group
-MULTIPATH_APART_M, MULTIPATH_BEHIND_M = 1.0, 0.6  # minimum distance and range difference of person and multipath
-MIN_NEARER, NEARER_SHARE = 2, 0.5  # points of the nearer group: minimum number, and share of the farther group
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class WindowFilter:
-    """Points that are removed from all windows, generated and recorded, before features are computed."""
-
-    busy: Cells = field(default_factory=NO_CELLS.copy)  # moving points in these cells are removed
-    radar: Quantisation | None = None  # of the task; None for models before 0.3, which kept neighbours and multipath
-
-    def masking(self, cells: Cells) -> "WindowFilter":
-        """The filter that also removes moving points in further cells."""
-        return replace(self, busy=np.unique(np.concatenate([self.busy, cells]), axis=0)) if len(cells) else self
-
-    def __call__(self, window: PointRecording) -> PointRecording:
-        """The window without the removed points."""
-        window = remove_motion(window, self.busy)
-        return window if self.radar is None else remove_multipath(group_neighbours(window, self.radar))
-
-
-def remove_multipath(window: PointRecording) -> PointRecording:
-    """The window without moving points behind a nearer group that moves at the same time.
-
-    Multipath of a person over a wall or another body is always longer than the direct path, so of two groups that move
-    at the same time the nearer one is the person.
-
-    Args:
-        window: Points of one window.
-    """
-    cloud = window.cloud
-    moving = np.flatnonzero(is_moving(cloud))
-    frame, range_m = cloud.frame[moving], cloud.range_m[moving]
-    place_m = np.stack([cloud.x_m, cloud.y_m], axis=1)[moving]
-    lag = max(int(AT_ONCE_S * window.frame_rate_hz), 1)
-    one, other = index_runs(np.searchsorted(frame, frame - lag), np.searchsorted(frame, frame + lag, side="right"))
-    apart_m = np.hypot(*(place_m[one] - place_m[other]).T)
-    group = np.bincount(one, apart_m < MULTIPATH_GROUP_M, minlength=len(frame))
-    nearer = np.bincount(
-        one, (apart_m > MULTIPATH_APART_M) & (range_m[other] < range_m[one] - MULTIPATH_BEHIND_M), minlength=len(frame)
-    )
-    hidden = moving[(nearer >= MIN_NEARER) & (nearer >= NEARER_SHARE * group)]
-    kept = np.ones(len(cloud.frame), bool)
-    kept[hidden] = False
-    return replace(window, cloud=cloud.select(kept)) if len(hidden) else window
+def _walks(cloud: PointCloud, frame_rate_hz: float) -> Bool[np.ndarray, " point"]:
+    """Mask (point,) of the points in courses of COURSE_S in which somebody walks."""
+    long = max(round(COURSE_S * frame_rate_hz), 2)
+    found = np.zeros(len(cloud.frame), bool)
+    for course in np.unique(cloud.frame // long):
+        own = np.flatnonzero(cloud.frame // long == course)
+        frames, first, count = np.unique(cloud.frame[own], return_index=True, return_counts=True)
+        if len(frames) < COURSE_SHARE * long:
+            continue
+        range_m, velocity = (
+            np.add.reduceat(values[own], first) / count for values in (cloud.range_m, cloud.radial_velocity_mps)
+        )
+        step_s = np.diff(frames) / frame_rate_hz
+        way_m = np.concatenate([[0.0], np.cumsum((velocity[1:] + velocity[:-1]) / 2 * step_s)])
+        if min(np.ptp(way_m), np.ptp(range_m)) >= WALKED_M:
+            slope = np.polyfit(way_m, range_m, 1)[0]
+            found[own] = np.corrcoef(way_m, range_m)[0, 1] >= RELATED and FOLLOWS[0] <= slope <= FOLLOWS[1]
+    return found

@@ -4,7 +4,7 @@ The recordings of a task are in folders named by label, as .npz, .dat or any for
 """
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +23,9 @@ SAME_RATE = 0.02
 MAX_FRAMES = 10_000_000
 BREAK_FRAMES = 100  # between the takes of one file
 STILL_MPS = 0.1  # maximum radial speed of a static point
+HOLE_S = 10.0  # a longer hole in the frame numbers of a table is missing frames, not an empty room
+SURE_HOLE_S, RARELY = 1.0, 0.02  # the same, where the board reports points in nearly every frame; share of the others
+MAX_MISSING = 0.2  # maximum share of missing frames in a window
 
 
 def is_moving(cloud: PointCloud) -> Bool[np.ndarray, " point"]:
@@ -40,6 +43,7 @@ class PointRecording:
     frame_rate_hz: float
     label: str = ""  # the activity, if known
     first_frame: int = 0  # within the recording that this is a part of
+    missing: Int[np.ndarray, " missing"] = field(default_factory=lambda: np.zeros(0, int))  # frames never received
     joints_m: Float[np.ndarray, "frame 22 3"] | None = None  # of one person in the radar's level axes, if known
 
     def windows(self, seconds: float, step_s: float | None = None) -> "list[PointRecording]":
@@ -62,11 +66,13 @@ class PointRecording:
         """
         inside = (self.cloud.frame >= first) & (self.cloud.frame < first + num_frames)
         cloud = self.cloud.select(inside)
+        missing = self.missing[(self.missing >= first) & (self.missing < first + num_frames)]
         return replace(
             self,
             cloud=replace(cloud, frame=cloud.frame - first),
             num_frames=num_frames,
             first_frame=self.first_frame + first,
+            missing=missing - first,
             joints_m=None if self.joints_m is None else self.joints_m[first : first + num_frames],
         )
 
@@ -117,10 +123,38 @@ def read_task_recording(file: Path, settings: RecordingSettings, label: str = ""
     """
     if file.is_dir() and (file / POINTS_FILE).is_file():
         file = file / POINTS_FILE
-    cloud, frames = _read_cloud(file, settings)
+    cloud, frames, missing = _read_cloud(file, settings)
     name = file.parent.name if file.name == POINTS_FILE else file.stem
     frames = frames or settings.window_frames  # without any frame it counts as one window
-    return PointRecording(name=name, cloud=cloud, num_frames=frames, frame_rate_hz=settings.frame_rate_hz, label=label)
+    if missing is None:
+        missing = hole_frames(cloud.frame, settings.frame_rate_hz)
+    return PointRecording(
+        name=name,
+        cloud=cloud,
+        num_frames=frames,
+        frame_rate_hz=settings.frame_rate_hz,
+        label=label,
+        missing=missing[missing < frames],
+    )
+
+
+def hole_frames(frame: Int[np.ndarray, " point"], frame_rate_hz: float) -> Int[np.ndarray, " missing"]:
+    """Frames that a table of points lacks, as far as its frame numbers tell: those of long holes.
+
+    A table has no rows of a frame without points, nor of one that was lost. An empty room may be silent for some
+    seconds, but not where the board reports points in nearly every other frame.
+
+    Args:
+        frame: Frame of each point, rising.
+        frame_rate_hz: Frames per second.
+    """
+    held = np.unique(frame)
+    between = np.diff(held) - 1
+    others = between[between < SURE_HOLE_S * frame_rate_hz]
+    is_rare = others.sum() <= RARELY * (others.sum() + len(held))
+    is_hole = between >= (SURE_HOLE_S if is_rare else HOLE_S) * frame_rate_hz
+    first = held[:-1][is_hole] + 1
+    return index_runs(first, first + between[is_hole])[1]
 
 
 def _label_of(file: Path, folder: Path, labels: tuple[str, ...]) -> str:
@@ -138,8 +172,8 @@ def _belongs_to_points_file(file: Path) -> bool:
     return file.name in (SIGNAL_FILE, "pose.npz") and (file.parent / POINTS_FILE).is_file()
 
 
-def _read_cloud(file: Path, settings: RecordingSettings) -> tuple[PointCloud, int]:
-    """Points and number of frames, 0 if unknown."""
+def _read_cloud(file: Path, settings: RecordingSettings) -> tuple[PointCloud, int, np.ndarray | None]:
+    """Points, number of frames (0 if unknown), and the frames that are known to be missing (None if unknown)."""
     if file.is_dir() and not any(file.glob("*.bin")):
         raise InputError(
             f"{file} holds no {POINTS_FILE}; give a result folder of mmweaver generate, or one recording"
@@ -150,7 +184,9 @@ def _read_cloud(file: Path, settings: RecordingSettings) -> tuple[PointCloud, in
         if "pts" in held or "x_m" not in held:  # otherwise its columns are named, as in files of `mmweaver points`
             return _from_columns(held, file, settings.columns)
     cloud = read_points(file)
-    return cloud, max(cloud.num_frames, _frames_of_signal(file, settings))
+    of_signal = _frames_of_signal(file, settings)
+    is_whole = of_signal > 0 or file.name == POINTS_FILE  # of mmWeaver, which loses no frame
+    return cloud, max(cloud.num_frames, of_signal), np.zeros(0, int) if is_whole else cloud.missing
 
 
 def _frames_of_signal(file: Path, settings: RecordingSettings) -> int:
@@ -176,8 +212,11 @@ def _num_frames(frame: np.ndarray) -> int:
     return int(frame[-1]) + 1 if len(frame) else 0
 
 
-def _from_columns(held: NpzArrays, file: Path, columns: RecordedColumns) -> tuple[PointCloud, int]:
-    """`frame` (point,) and `pts` (point, column), perhaps `num_frames`; frames count from the first with points."""
+def _from_columns(held: NpzArrays, file: Path, columns: RecordedColumns) -> tuple[PointCloud, int, np.ndarray | None]:
+    """`frame` (point,) and `pts` (point, column), perhaps `num_frames`; frames count from the first with points.
+
+    A file that names `num_frames` has all of them.
+    """
     frame = held.numbers("frame", ("point",), low=0, high=2**31).astype(int)
     pts = held.numbers("pts", ("point", "column"), low=-1e9, high=1e9).astype(float)
     # where frame numbers restart, another take follows after a break
@@ -185,11 +224,11 @@ def _from_columns(held: NpzArrays, file: Path, columns: RecordedColumns) -> tupl
     frame = frame + np.cumsum(np.where(frame < before, before - frame + BREAK_FRAMES, 0))
     if "num_frames" in held:  # then frames count from 0
         frames = int(held.numbers("num_frames", (), low=_num_frames(frame), high=MAX_FRAMES))
-        return columns.cloud(frame, pts, str(file)), frames
+        return columns.cloud(frame, pts, str(file)), frames, np.zeros(0, int)
     frame = frame - frame[0] if len(frame) else frame
     if _num_frames(frame) > MAX_FRAMES:
         raise InputError(f"{file} has frame numbers up to {frame[-1]}; leave it out")
-    return columns.cloud(frame, pts, str(file)), _num_frames(frame)
+    return columns.cloud(frame, pts, str(file)), _num_frames(frame), None
 
 
 # samples and windows ------------------------------------------------------------------------------------------------
@@ -216,7 +255,7 @@ def windows_of(
 
     Where recordings are never split, the remainder at the end is dropped. If one of the labels is the empty room,
     gaps are samples of it, except in recordings of other labels; otherwise a recording without points is one
-    sample, unless samples are single performances.
+    sample, unless samples are single performances. Windows of which more than a fifth is missing are left out.
 
     Args:
         recording: Frames of one recording.
@@ -238,6 +277,7 @@ def windows_of(
     else:
         silent = [] if samples or settings.has_single_performances else [recording]
     windows += [window for one in silent for window in one.windows(settings.window_s, step_s)]
+    windows = [window for window in windows if len(window.missing) <= MAX_MISSING * window.num_frames]
     return sorted(windows, key=lambda window: window.first_frame)
 
 

@@ -7,7 +7,7 @@ is kept, so that one echo gives about as many points whether or not the board gr
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.task_file import RecognitionTask
@@ -54,9 +54,15 @@ class Quantisation:
 
 
 def group_neighbours(window: PointRecording, radar: Quantisation) -> PointRecording:
-    """Keeps the strongest of adjacent cells, in the directions in which the task's firmware groups.
+    """The window without the points of `is_flank`."""
+    flank = is_flank(window, radar)
+    return replace(window, cloud=window.cloud.select(~flank)) if flank.any() else window
 
-    Velocities are cyclic. Points that have been grouped already have no neighbours and are unchanged.
+
+def is_flank(window: PointRecording, radar: Quantisation) -> Bool[np.ndarray, " point"]:
+    """Mask (point,) of cells next to a stronger one, in the directions in which the task's firmware groups.
+
+    Velocities are cyclic. Points that have been grouped already have no neighbours.
 
     Args:
         window: Points of one window.
@@ -64,7 +70,7 @@ def group_neighbours(window: PointRecording, radar: Quantisation) -> PointRecord
     """
     cloud = window.cloud
     if not len(cloud.frame) or not (radar.groups_range or radar.groups_velocity):
-        return window
+        return np.zeros(len(cloud.frame), bool)
     columns = max(round(2 * radar.max_velocity_mps / radar.velocity_step_mps), 1)
     bins = [
         cloud.frame,
@@ -107,4 +113,4 @@ def group_neighbours(window: PointRecording, radar: Quantisation) -> PointRecord
             other = neighbour(rows, steps)
             there = np.where(other >= 0, strength[other], -np.inf)
             kept &= (there < strength) | ((there == strength) & (other >= here))  # ties: the first
-    return window if kept.all() else replace(window, cloud=cloud.select(kept[cell.ravel()]))
+    return ~kept[cell.ravel()]

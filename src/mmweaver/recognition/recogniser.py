@@ -19,7 +19,8 @@ from mmweaver.core.records import PointCloud
 from mmweaver.core.safe_files.regular_files import check_exists
 from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.safe_files.safe_text import read_json
-from mmweaver.recognition.background_mask import NO_CELLS, WindowFilter
+from mmweaver.recognition.background_mask import NO_CELLS
+from mmweaver.recognition.guards import GUARDS, WindowFilter
 from mmweaver.recognition.point_recordings import PointRecording, windows_of
 from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.recording_checks import contradictions
@@ -69,6 +70,10 @@ class Recogniser:
     def labels(self) -> tuple[str, ...]:
         """Labels in the order of the votes."""
         return self.settings.labels
+
+    def without(self, guards: frozenset[str]) -> "Recogniser":
+        """The recogniser with further guards switched off (`guards.GUARDS`)."""
+        return replace(self, points=self.points.without(guards))
 
     def contradictions(self, recordings: Sequence[PointRecording]) -> list[str]:
         """Contradictions between recordings and the task, one line each.
@@ -203,7 +208,13 @@ def save_recogniser(folder: Path, model: Recogniser) -> None:
     """
     write_trees(folder / TREES_FILE, model.trees)
     with atomic_file(folder / FEATURES_FILE) as temporary, temporary.open("wb") as stream:
-        np.savez_compressed(stream, names=np.array(model.names), generated=model.generated, busy=model.points.busy)
+        np.savez_compressed(
+            stream,
+            names=np.array(model.names),
+            generated=model.generated,
+            busy=model.points.background,
+            persistent=model.points.persistent,
+        )
     settings = asdict(model.settings) | {
         "columns": None if model.settings.columns is None else list(model.settings.columns.names)
     }
@@ -212,6 +223,7 @@ def save_recogniser(folder: Path, model: Recogniser) -> None:
         "version": VERSION,
         "recordings": settings,
         "outside_above": model.outside_above,
+        "guards_off": sorted(model.points.off),
         **model.meta,
     }
     with atomic_file(folder / META_FILE) as temporary:
@@ -237,18 +249,26 @@ def load_recogniser(folder: Path | str) -> Recogniser:
     generated = held.numbers("generated", (len(QUANTILES), len(names)), nan=True)
     if "recorded" in held:
         raise InputError(f"{folder} was trained with matching of features, which is gone; train the recogniser again")
-    busy = held.numbers("busy", ("cell", 2), kinds="iu", low=-1000, high=1000) if "busy" in held else NO_CELLS
+    background, persistent = (
+        held.numbers(name, ("cell", 2), kinds="iu", low=-1000, high=1000) if name in held else NO_CELLS
+        for name in ("busy", "persistent")
+    )
     outside_above = meta.get("outside_above")
     if not isinstance(outside_above, float):
         raise InputError(f"{folder / META_FILE} lacks outside_above; train the recogniser again")
-    known = {"kind", "version", "recordings", "outside_above"}
+    known = {"kind", "version", "recordings", "outside_above", "guards_off"}
     return Recogniser(
         settings=settings,
         names=names,
         trees=read_trees(folder / TREES_FILE, len(names), len(settings.labels)),
         generated=generated,
         outside_above=outside_above,
-        points=WindowFilter(busy=busy, radar=Quantisation.read(meta.get("radar_facts"))),
+        points=WindowFilter(
+            background=background,
+            persistent=persistent,
+            radar=Quantisation.read(meta.get("radar_facts")),
+            off=frozenset(GUARDS) & frozenset(map(str, meta.get("guards_off") or ())),
+        ),
         meta={name: value for name, value in meta.items() if name not in known},
     )
 

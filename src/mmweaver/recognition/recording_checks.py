@@ -5,9 +5,11 @@ recordings contradict the task, the recogniser was trained for another board tha
 """
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from mmweaver.recognition.guards import is_impossible
 from mmweaver.recognition.point_recordings import STILL_MPS, PointRecording, is_moving
 from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.spatiotemporal_features import near_median
@@ -21,12 +23,15 @@ BEHIND, ASIDE_RAD = 0.05, np.radians(50)
 TOO_FAST, OFF_STEP, TOLERANCE = 0.005, 0.2, 0.1  # shares of moving points; of a step
 HARDLY, MOSTLY = 0.01, 0.6  # shares of points at rest
 GROUPED, UNGROUPED = 0.05, 0.3  # shares of points with a neighbour if the firmware does, or does not, group them
+MISSING_SHARE = 0.005  # of frames
 APART_M, OFTEN = 1.2, 0.25  # distance of two moving objects; share of the frames with motion
 WHAT_TO_DO = {
     "cfg": "name the .cfg that the board was sent",
     "columns": "check the directions of `columns`",
     "sign": 'name the column "velocity_towards" (or "velocity", where it is named so)',
     "place": "if it is nobody (a fan, an echo), record the empty place and name it as `background`",
+    "damaged": "these points are left out; check the reader of the data port",
+    "missing": "windows there are left out; name `num_frames` in a .npz of which no frame is missing",
 }
 Lines = Iterator[tuple[str, str]]  # what is wrong; a word of WHAT_TO_DO, or what to do
 
@@ -35,27 +40,42 @@ def contradictions(recordings: Sequence[PointRecording], radar: Quantisation) ->
     """Properties of recordings that are impossible if the task is right, with advice.
 
     Args:
-        recordings: Recordings of the task; of fewer than 200 points nothing is checked.
+        recordings: Recordings of the task; of fewer than 200 points only velocities and missing frames are checked.
         radar: Steps of range and velocity, and grouping.
 
     Returns:
         One line per contradiction.
     """
-    clouds = [recording.cloud for recording in recordings]
+    damaged = [is_impossible(recording) for recording in recordings]
+    found = [*_check_damaged(recordings, damaged), *_check_missing(recordings)]
+    recordings = [replace(one, cloud=one.cloud.select(~mask)) for one, mask in zip(recordings, damaged, strict=True)]
     x, y, velocity = (
-        np.concatenate([np.zeros(0), *(getattr(cloud, name) for cloud in clouds)])
+        np.concatenate([np.zeros(0), *(getattr(one.cloud, name) for one in recordings)])
         for name in ("x_m", "y_m", "radial_velocity_mps")
     )
-    if len(x) < FEWEST:
-        return []
-    found = [
-        *_check_places(x, y),
-        *_check_velocities(np.abs(velocity), radar),
-        *_check_ways(recordings, radar),
-        *_check_neighbours(recordings, radar),
-        *_check_others(recordings, radar),
-    ]
+    if len(x) >= FEWEST:
+        found += [
+            *_check_places(x, y),
+            *_check_velocities(np.abs(velocity), radar),
+            *_check_ways(recordings, radar),
+            *_check_neighbours(recordings, radar),
+            *_check_others(recordings, radar),
+        ]
     return [f"{line}; {WHAT_TO_DO.get(todo, todo)}" for line, todo in found]
+
+
+def _check_damaged(recordings: Sequence[PointRecording], damaged: list[np.ndarray]) -> Lines:
+    if count := sum(int(mask.sum()) for mask in damaged):
+        fastest = max(float(np.abs(one.cloud.radial_velocity_mps).max(initial=0.0)) for one in recordings)
+        files = f"{sum(map(bool, map(np.any, damaged)))} of {len(recordings)} recordings"
+        yield f"{count} points of {files} have impossible velocities, up to {fastest:,.0f} m/s", "damaged"
+
+
+def _check_missing(recordings: Sequence[PointRecording]) -> Lines:
+    lost = [len(one.missing) for one in recordings]
+    if (total := sum(one.num_frames for one in recordings)) and sum(lost) >= MISSING_SHARE * total:
+        files = f"{np.count_nonzero(lost)} of {len(recordings)} recordings"
+        yield f"{sum(lost)} of {total} frames are missing, in {files}, the longest {max(lost)}", "missing"
 
 
 def _check_places(x_m: np.ndarray, y_m: np.ndarray) -> Lines:

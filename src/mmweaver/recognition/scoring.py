@@ -10,6 +10,7 @@ from jaxtyping import Float, Int
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.recognition.background_mask import left_out_lines, persistent_motion_cells
+from mmweaver.recognition.guard_report import removed_points
 from mmweaver.recognition.point_recordings import PointRecording, windows_of
 from mmweaver.recognition.recogniser import FEWEST, QUANTILES, Features, Quantiles, Recogniser
 from mmweaver.recognition.window_features import moving_points
@@ -148,7 +149,8 @@ def score_recordings(model: Recogniser, recordings: Sequence[PointRecording]) ->
         `window`, `three_windows` and `recording`; `generated_on_generated` (accuracy on generated people that were held
         out); `distance` (recorded windows against generated ones, without labels); `warning` where the recordings are
         out of distribution; `contradictions` with the task; `left_out`, places with persistent motion that were
-        ignored; and `hardly_distinct`, labels that the radar cannot discriminate.
+        ignored; `removed`, what guards removed from each recording, and its missing frames; and `hardly_distinct`,
+        labels that the radar cannot discriminate.
 
     Raises:
         InputError: If the recordings contain no complete window.
@@ -158,6 +160,7 @@ def score_recordings(model: Recogniser, recordings: Sequence[PointRecording]) ->
     if not windows:
         raise InputError(f"no recording lasts {model.settings.window_s:g} s, which is one window; give longer ones")
     model, left_out = mask_persistent_motion(model, recordings)
+    removed = removed_points(model.points, recordings, [len(own) for own in cut])
     features = model.features(windows)
     evaluation = Evaluation(
         classes=model.labels,
@@ -181,17 +184,18 @@ def score_recordings(model: Recogniser, recordings: Sequence[PointRecording]) ->
         "warning": warning(far),
         "contradictions": model.contradictions(recordings),
         "left_out": left_out,
+        "removed": removed,
         "hardly_distinct": hardly_distinct(model),
     }
 
 
 def mask_persistent_motion(model: Recogniser, recordings: Sequence[PointRecording]) -> tuple[Recogniser, list[str]]:
     """The recogniser without cells of persistent motion in these recordings, and lines of text about them."""
-    cells = persistent_motion_cells(recordings, model.points.radar)
-    points = model.points.masking(cells)
-    if len(points.busy) == len(model.points.busy):
+    if "persistent" in model.points.off:
         return model, []
-    return replace(model, points=points), left_out_lines(cells)
+    cells = persistent_motion_cells(recordings, model.points.radar)
+    known = np.concatenate([model.points.persistent, cells])
+    return replace(model, points=replace(model.points, persistent=np.unique(known, axis=0))), left_out_lines(cells)
 
 
 def hardly_distinct(model: Recogniser) -> list[str]:

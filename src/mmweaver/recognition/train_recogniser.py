@@ -21,8 +21,9 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.optional_packages import need
 from mmweaver.core.output_checks import check_output_folder
 from mmweaver.core.seeding import stream
-from mmweaver.recognition.background_mask import left_out_lines, persistent_motion_cells
+from mmweaver.recognition.background_mask import NO_CELLS, left_out_lines, persistent_motion_cells
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
+from mmweaver.recognition.guard_report import removed_points
 from mmweaver.recognition.point_recordings import (
     PointRecording,
     read_task_recording,
@@ -246,7 +247,7 @@ def train_recogniser(
     radar, settings = Quantisation.of(task), task.recordings
     background = [] if task.background is None else [read_task_recording(task.background, settings)]
     unlabelled = [] if task.unlabelled is None else read_task_recordings(task.unlabelled, settings, labelled=False)
-    persistent = persistent_motion_cells(unlabelled, radar)
+    persistent = NO_CELLS if "persistent" in options.guards_off else persistent_motion_cells(unlabelled, radar)
     recorded = [] if labelled is None else read_task_recordings(labelled, settings)
     taught, seen = ([window for one in some for window in windows_of(one, settings)] for some in (recorded, unlabelled))
     if recorded and not taught:
@@ -276,6 +277,7 @@ def train_recogniser(
         },
         "contradictions": contradictions([*unlabelled, *taught, *background], radar),
         "left_out": left_out_lines(persistent),
+        "removed": removed_points(model.points, [*unlabelled, *recorded]),
         "cpu_seconds": round(time.process_time() - began_s, 1),
     }
     model = replace(model, meta={**note, **model.meta})

@@ -9,8 +9,9 @@ from jaxtyping import Bool, Float, Int
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud
 from mmweaver.core.seeding import stream
-from mmweaver.recognition.background_mask import NO_CELLS, Cells, WindowFilter, background_cells
+from mmweaver.recognition.background_mask import NO_CELLS, Cells, background_cells
 from mmweaver.recognition.generated_sequences import COLUMNS
+from mmweaver.recognition.guards import WindowFilter
 from mmweaver.recognition.point_recordings import PointRecording, windows_of
 from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.recogniser import recognition_features, window_row
@@ -38,6 +39,7 @@ class TrainingOptions:
     leaf_size: int = 3
     feature_share: float = 0.15
     labelled_weight: float = 25.0  # of labelled recordings, relative to generated ones
+    guards_off: tuple[str, ...] = ()  # of `guards.GUARDS`
 
     def __post_init__(self) -> None:
         if not 2 <= self.sequences <= 100_000:
@@ -175,7 +177,9 @@ def generated_windows(
             first, frames = window.first_frame, window.num_frames
             another = varied(sequence, first, frames, rng, radar, options.variation, once=once)
             windows.append(_add_background(background, augmented(another, rng, how), rng))
-    points = WindowFilter(busy=background_cells(background), radar=radar).masking(persistent)
+    points = WindowFilter(
+        background=background_cells(background), persistent=persistent, radar=radar, off=frozenset(options.guards_off)
+    )
     windows = [points(window) for window in windows]
     names = tuple(window_row(windows[0]))
     return TrainingWindows(

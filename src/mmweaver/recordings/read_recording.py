@@ -3,6 +3,9 @@
 radar.npz, or a folder that contains one   cube with its radar.json (written by mmweaver generate and process)
 folder of mmweaver generate --stream       its complete parts as one cube
 capture folder of mmwave-capture-std       radar.cfg, dca.pcap
+folder of a DCA1000 capture                *.bin (X_Raw_0.bin, ...), with its .mmwave.json, .cfg, .lua or radar.json
+folder of Infineon's Radar SDK             config.json, radar.npy
+.mat, .h5, .hdf5, .npy                     an array by a mapping file (layout map.toml)
 adc_data.bin                               raw samples as stored by a DCA1000
 .pcap, .pcapng                             packets of a DCA1000
 .npy                                       raw samples with named axes, or the array of another project (layout)
@@ -23,8 +26,11 @@ from mmweaver.core.range_window import chosen_range
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
 from mmweaver.core.safe_files.regular_files import check_exists
 from mmweaver.core.shapes import LostShare
+from mmweaver.io.capture_folder import find_capture
 from mmweaver.io.capture_std import PACKETS, RADAR, is_capture, read_radar_capture
 from mmweaver.io.dca_packets import PacketCapture, read_pcap
+from mmweaver.io.infineon import AXES, SAMPLES, SETTINGS, infineon_folder, read_infineon
+from mmweaver.io.mapped_arrays import read_mapped, read_mapping
 from mmweaver.io.npz_files import read_radar_npz
 from mmweaver.io.peer_arrays import LAYOUTS, detect_layout
 from mmweaver.io.radar_file import load_radar
@@ -120,7 +126,7 @@ def read_recording(
         frames: Range of frames. Default: all.
         mapped: Whether the cube of a radar.npz is memory-mapped, read-only. Default: False.
         **samples: `layout`, `axes`, `iq_order` and `tx_order`, see `RawReading`. A .npy needs its `axes`, or a
-            `layout`: "hupr" (recognised by its shape), "mmmesh", "rf_genesis" or "cubelearn".
+            `layout`: "hupr" (recognised by its shape), "mmmesh", "rf_genesis", "cubelearn" or a mapping file (.toml).
 
     Returns:
         Raw samples, or the cube if the file contains no samples.
@@ -138,6 +144,8 @@ def read_recording(
 def _read(path: Path, reading: RawReading, frames: slice, mapped: bool) -> Recording:
     """Reads a recording with the range bins of its radar."""
     layout, radar = reading.layout, reading.radar
+    if layout is not None and layout.endswith(".toml"):
+        return _read_mapped(path, reading, frames)
     if layout is not None and (layout not in LAYOUTS or reading.axes is not None):
         raise InputError(f"give a layout ({', '.join(LAYOUTS)}) or axes, not both; got {layout!r} and {reading.axes!r}")
     check_exists(path, "a recording or a capture folder")
@@ -145,6 +153,8 @@ def _read(path: Path, reading: RawReading, frames: slice, mapped: bool) -> Recor
         return found
     if path.suffix == ".npz":
         return _stretch(_read_cube(path, radar, mapped), frames)
+    if path.name == SAMPLES and layout is None and reading.axes is None and infineon_folder(path.parent) is not None:
+        return _read_infineon(path.parent, reading, frames)
     if (path.suffix == ".npy" or path.is_dir()) and reading.axes is None:
         layout = layout or detect_layout(path)
     radar = radar if radar is not None or layout == "cubelearn" else layout
@@ -162,6 +172,27 @@ def _read(path: Path, reading: RawReading, frames: slice, mapped: bool) -> Recor
         return _stretch(_read_layout(found, layout), frames)
     found = replace(_read_samples(found, reading, frames), first_frame=frames.start or 0)
     return _calibrated(found, None if source is None else read_ti_calibration(source))
+
+
+def _read_mapped(path: Path, reading: RawReading, frames: slice) -> Recording:
+    """Reads an array as a mapping file says, whose radar is taken unless another is given."""
+    mapping = read_mapping(Path(reading.layout or ""))
+    radar = reading.radar if reading.radar is not None else mapping.radar
+    if radar is None:
+        raise InputError(f'{mapping.path} names no radar; add radar = "profile.cfg" or give --radar')
+    config = as_config(radar)
+    if reading.tx_order is not None:
+        config = replace(config, tx_order=reading.tx_order)
+    found = Recording(
+        path=path,
+        files={"recording": path, "mapping": mapping.path},
+        config=config,
+        adc=read_mapped(path, mapping, config, frames),
+        axes=mapping.axes,
+        radar_source=None if isinstance(radar, RadarConfig) else str(radar),
+        first_frame=frames.start or 0,
+    )
+    return found
 
 
 def _read_samples(found: Recording, reading: RawReading, frames: slice) -> Recording:
@@ -273,12 +304,26 @@ def _read_folder(path: Path, reading: RawReading, frames: slice, mapped: bool) -
         return Recording(path=path, files={"recording": path}, config=cube.config, stored_cube=cube)
     if is_capture(path):
         return _read_capture(path, reading, frames)
+    if (avian := infineon_folder(path)) is not None:
+        return _read_infineon(avian, reading, frames)
+    if (capture := find_capture(path)) is not None:
+        own = reading if reading.radar is not None else replace(reading, radar=capture.radar)
+        found = _read(capture.recording, own, frames, mapped)
+        return replace(found, notes=(*found.notes, *capture.notes))
     if any(path.glob("*.npy")):
         return None
     raise InputError(
-        f"{path} is not a capture folder ({PACKETS}) and holds neither {CUBE} nor frames of HuPR (.npy); give a folder"
-        " that mmweaver process wrote"
+        f"{path} is not a capture folder ({PACKETS}, *.bin, or Infineon's radar.npy) and holds neither {CUBE} nor"
+        " frames of HuPR (.npy); give a folder that mmweaver process wrote"
     )
+
+
+def _read_infineon(folder: Path, reading: RawReading, frames: slice) -> Recording:
+    """Reads a folder of Infineon's Radar SDK, whose config.json is the radar unless another is given."""
+    adc = read_infineon(folder, None if reading.radar is None else as_config(reading.radar), frames)
+    files = {"recording": folder / SAMPLES, "radar": folder / SETTINGS}
+    found = Recording(path=folder, files=files, config=adc.config, adc=adc, axes=AXES, radar_source=str(files["radar"]))
+    return replace(found, first_frame=frames.start or 0)
 
 
 def _read_cube(path: Path, radar: str | Path | RadarConfig | None, mapped: bool) -> Recording:

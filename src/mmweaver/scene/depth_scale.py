@@ -7,6 +7,7 @@ of a plane is linear in the picture, its inverse distance is not. Formats: table
 """
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
 from mmweaver.core.shapes import DepthPixels
 from mmweaver.scene.layout.gravity import find_gravity
 from mmweaver.scene.photo.depth_grid import make_grid
+from mmweaver.scene.photo.picture_files import depth_in_metres
 
 # name: metres per count, data sets and cameras that use it, and how common it is
 UNITS: dict[str, tuple[float, str, float]] = {
@@ -27,11 +29,12 @@ UNITS: dict[str, tuple[float, str, float]] = {
     "10000": (1e-4, "0.1 mm", 0.03),
     "cm": (1e-2, "centimetres", 0.02),
 }
-KINDS = ("z", "ray", "disparity")
+KINDS, ROTATED = ("z", "ray", "disparity"), "sunrgbd"
 NORMAL_M = 2.5  # median depth at which the room is looked at before its unit is known
 # natural logarithm of a length in metres: median of rooms, spread
 CAMERA_HEIGHT, SHOWN_HEIGHT, FAR = (np.log(1.2), 0.45), (np.log(2.1), 0.35), (np.log(3.8), 0.45)
 CLEAR = 4.0  # ratio of the likelihoods of the two best readings; below, the user has to choose
+MIN_VALUES, OF_FIVE = 64, 1e3  # different counts, all multiples of 5: a Kinect's millimetres times 5
 POSSIBLE = 2e-3  # likelihood of the best reading relative to a typical room's; below, none fits
 KINECT_BASE_MM, KINECT_INFINITY = 351.3e3, 1092.5  # depth = base / (infinity - disparity); NYU Depth V2's toolbox
 MAX_DISPARITY = 2047
@@ -46,6 +49,66 @@ class DepthScale:
 
     unit_m: float
     note: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class DepthReading:
+    """How a depth picture is read; None estimates it.
+
+    Attributes:
+        unit: Name in UNITS, "sunrgbd", or metres per count.
+        kind: One of KINDS.
+        stated_unit_m: Metres per count that a camera file states.
+    """
+
+    unit: str | None = None
+    kind: str | None = None
+    stated_unit_m: float | None = None
+
+    def depth(self, path: Path, raw: np.ndarray, camera: CameraIntrinsics) -> tuple[DepthPixels, list[str]]:
+        """Depth in metres, (height, width), with sentences on what was estimated.
+
+        Args:
+            path: The file, for messages.
+            raw: Counts or floats as stored, (height, width).
+            camera: The camera, in pixels of `raw`.
+
+        Raises:
+            InputError: If the values cannot be depth, or their unit stays open.
+        """
+        if self.kind is not None and self.kind not in KINDS:
+            raise InputError(f"unknown kind of depth {self.kind!r}; known: {', '.join(KINDS)}")
+        if self.kind == "disparity":
+            return depth_in_metres(path, depth_of_disparity(raw), 1.0), []
+        counts, unit_m, notes = self._unit(path, raw, camera)
+        depth_m = depth_in_metres(path, counts, unit_m)
+        is_open = self.kind is None and self.stated_unit_m is None
+        if self.kind == "ray" or (is_open and is_ray_distance(depth_m, camera)):
+            depth_m = depth_along_axis(depth_m, camera)
+            if self.kind is None:
+                notes.append(
+                    f"The values of {path.name} were taken as distances along the ray, since only then surfaces are"
+                    " flat (--depth-kind ray)."
+                )
+        return depth_m, notes
+
+    def _unit(
+        self, path: Path, raw: np.ndarray, camera: CameraIntrinsics
+    ) -> tuple[np.ndarray, float | None, list[str]]:
+        """Counts, metres per count (None: floats in metres), and sentences."""
+        if raw.dtype.kind not in "ui":
+            return raw, None, []
+        refuse_swapped_bytes(raw, path.name)
+        is_sun = self.unit is None and self.stated_unit_m is None and is_rotated(raw)
+        if self.unit == ROTATED or is_sun:
+            note = f"The bits of {path.name} were rotated back by three, as SUN RGB-D stores millimetres"
+            return rotated_by_three(raw), UNITS["mm"][0], [f"{note} (--depth-unit {ROTATED})."] if is_sun else []
+        if self.unit is not None:
+            return raw, unit_of_name(self.unit), []
+        if self.stated_unit_m is not None:
+            return raw, self.stated_unit_m, []
+        found = estimate_unit(raw, camera, path.name)
+        return raw, found.unit_m, [found.note]
 
 
 def unit_of_name(given: str) -> float:
@@ -86,14 +149,17 @@ def estimate_unit(counts: np.ndarray, intrinsics: CameraIntrinsics, name: str) -
         InputError: If two readings are about as likely, or none is.
     """
     measured = counts[(counts > 0) & (counts < np.iinfo(np.uint16).max)]
-    if len(measured) > 100 and not (measured % 5).any():
-        return DepthScale(unit_m=UNITS["tum"][0], note=_sentence(name, "tum", "all of them are multiples of 5"))
+    if not len(measured):
+        return DepthScale(unit_m=UNITS["mm"][0], note="")
     median = float(np.median(measured))
     lengths = _lengths(counts, intrinsics, median)
     likelihood = {one: _likelihood(one, lengths, median) for one in UNITS}
+    if len(np.unique(measured)) > MIN_VALUES and not (measured % 5).any():
+        likelihood["tum"] *= OF_FIVE
     first, second, third = sorted(UNITS, key=lambda one: -likelihood[one])[:3]
-    seen = _seen(lengths, UNITS[first][0] * median / NORMAL_M)
-    if likelihood[first] > CLEAR * likelihood[second] and likelihood[first] > POSSIBLE * UNITS[first][2]:
+    is_clear = likelihood[first] > max(CLEAR * likelihood[second], POSSIBLE * UNITS[first][2])
+    if is_clear and (first == "mm" or "camera" in lengths):  # without a floor only the usual unit is believed
+        seen = _seen(lengths, UNITS[first][0] * median / NORMAL_M)
         return DepthScale(unit_m=UNITS[first][0], note=_sentence(name, first, seen))
     readings = [
         f"--depth-unit {one} ({_seen(lengths, UNITS[one][0] * median / NORMAL_M)})" for one in (first, second, third)
@@ -147,7 +213,9 @@ def refuse_swapped_bytes(counts: np.ndarray, name: str) -> None:
     Raises:
         InputError: If neighbours are alike only with the bytes swapped.
     """
-    if counts.dtype == np.uint16 and _step(counts) > SMOOTHER * _step(counts.byteswap()):
+    if counts.dtype != np.uint16 or len(np.unique(counts)) <= MIN_VALUES:
+        return
+    if _step(counts) > SMOOTHER * _step(counts.byteswap()):
         held = counts.byteswap()
         advice = "give --depth-kind disparity" if held.max() <= MAX_DISPARITY else "swap them and save it again"
         raise InputError(

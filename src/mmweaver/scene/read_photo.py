@@ -10,10 +10,11 @@ from mmweaver.core.pinhole import resized
 from mmweaver.core.records import CameraIntrinsics, ClassMask, RgbdPhoto
 from mmweaver.core.safe_files.safe_pictures import turned_upright
 from mmweaver.core.shapes import DepthPixels, RgbPixels
+from mmweaver.scene.depth_scale import DepthReading
 from mmweaver.scene.photo.camera_file import d455_intrinsics, intrinsics_for, lens_intrinsics, read_camera_file
 from mmweaver.scene.photo.depth_grid import fill_scattered_holes
 from mmweaver.scene.photo.estimated_depth import EXAMPLE, estimate_depth
-from mmweaver.scene.photo.picture_files import Turned, read_depth, read_rgb
+from mmweaver.scene.photo.picture_files import Turned, read_depth_values, read_rgb
 from mmweaver.scene.segmentation.builtin_segmenter import segment_builtin
 from mmweaver.scene.segmentation.class_file import read_class_file
 from mmweaver.scene.segmentation.pretrained_segmenter import refined_by_sam, segment
@@ -29,6 +30,8 @@ def read_photo(
     camera: str | Path | None = None,
     *,
     depth_model: str | None = None,
+    depth_unit: str | None = None,
+    depth_kind: str | None = None,
     classes: str | Path | None = None,
     segmenter: str | None = None,
     sam: str | None = None,
@@ -37,13 +40,16 @@ def read_photo(
 
     Args:
         rgb: Any picture that Pillow reads; rotated upright by its EXIF tag.
-        depth: A 16-bit PNG in camera.json's `depth_unit_m` (0.001 by default, 0 = hole), a .npy in metres (float) or
-            in that unit (integers), or a TIFF of either; the same view as the colour picture. Where one has more
-            pixels than the other, both are resampled to one size.
+        depth: A 16-bit PNG (0 = hole), a .npy in metres (float) or of integers, or a TIFF of either; the same view as
+            the colour picture. Where one has more pixels than the other, both are resampled to one size.
         camera: camera.json with fx, fy, cx, cy in pixels of the colour picture. None takes the focal length of the
             picture's EXIF, else the estimate of the depth model, else the field of view of a RealSense D455.
         depth_model: Folder or Hub name of a metric depth model, or "auto", used if there is no `depth`; a Prompt Depth
             Anything refines a coarse `depth`.
+        depth_unit: Unit of integers: a name in `depth_scale.UNITS`, "sunrgbd", or metres per count. Default:
+            camera.json's `depth_unit_m`, else estimated from the room and reported.
+        depth_kind: "z" (along the optical axis), "ray" (along each pixel's ray) or "disparity" (of a Kinect). Default:
+            z, or ray where only that makes surfaces flat.
         classes: Picture of COCO-Stuff class numbers, see `class_file`; excludes `segmenter` and `sam`.
         segmenter: Folder or Hub name of a segmentation model, or "builtin" for the built-in one.
         sam: Folder or Hub name of a SAM model that refines the segmenter's edges.
@@ -62,9 +68,13 @@ def read_photo(
     notes: list[str] = []
     if depth is not None:
         depth = _existing(depth, "--depth")
-        depth_m, depth_turned = read_depth(depth, numbers.get("depth_unit_m"))
-        if depth_lies := _lies_as_stored(rgb_size, depth_m, turned, depth_turned):
-            depth_m = turned_upright(depth_m, turned.orientation)
+        raw, depth_turned = read_depth_values(depth)
+        if depth_lies := _lies_as_stored(rgb_size, raw, turned, depth_turned):
+            raw = turned_upright(raw, turned.orientation)
+        seen_by = _camera_of_depth(raw.shape, camera, numbers, turned, rgb_size)
+        known = DepthReading(unit=depth_unit, kind=depth_kind, stated_unit_m=numbers.get("depth_unit_m"))
+        depth_m, depth_notes = known.depth(depth, raw, seen_by)
+        notes += depth_notes
         _check_same_view(rgb, depth, rgb_size, depth_m)
         _check_turned(rgb, depth, turned, depth_turned)
     else:
@@ -98,6 +108,20 @@ def read_photo(
     return photo, (*assumptions, *fill_notes, *size_notes, *notes)
 
 
+def _camera_of_depth(
+    shape: tuple[int, ...], camera: Path | None, numbers: dict[str, float], turned: Turned, rgb_size: tuple[int, int]
+) -> CameraIntrinsics:
+    """Intrinsics in pixels of a depth picture, as far as they are known before it is read."""
+    height, width = shape[0], shape[1]
+    numbers = {"width": float(rgb_size[0]), "height": float(rgb_size[1]), **numbers}
+    same = abs(numbers["width"] / numbers["height"] / (width / height) - 1) <= SAME_ASPECT
+    return (
+        _default_intrinsics(rgb_size, (width, height), turned, None)[0]
+        if camera is None or not same
+        else intrinsics_for(camera, numbers, width, height)
+    )
+
+
 def classes_of(
     photo: RgbdPhoto, *, classes: str | Path | None = None, segmenter: str | None = None, sam: str | None = None
 ) -> ClassMask | None:
@@ -127,15 +151,15 @@ def classes_of(
     return None if segmenter is None else segment(photo.rgb, segmenter, sam)
 
 
-def _has_aspect(size: tuple[int, int], depth_m: DepthPixels) -> bool:
-    height, width = depth_m.shape
+def _has_aspect(size: tuple[int, int], picture: np.ndarray) -> bool:
+    height, width = picture.shape
     return abs(size[0] / size[1] / (width / height) - 1) <= SAME_ASPECT
 
 
-def _lies_as_stored(rgb_size: tuple[int, int], depth_m: DepthPixels, colours: Turned, depths: Turned) -> bool:
+def _lies_as_stored(rgb_size: tuple[int, int], depth: np.ndarray, colours: Turned, depths: Turned) -> bool:
     """Whether the depth is rotated as the colours are stored: its shape shows it, and it has no EXIF tag."""
     is_quarter = colours.orientation >= 5 and depths.orientation == 1
-    return is_quarter and not _has_aspect(rgb_size, depth_m) and _has_aspect(colours.stored_size, depth_m)
+    return is_quarter and not _has_aspect(rgb_size, depth) and _has_aspect(colours.stored_size, depth)
 
 
 def _check_same_view(rgb: Path, depth: Path, rgb_size: tuple[int, int], depth_m: DepthPixels) -> None:

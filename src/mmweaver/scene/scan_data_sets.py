@@ -30,11 +30,11 @@ def last_number(picture: Path) -> float:
 
 def _seven_scenes(folder: Path, colour: Path) -> ScanFrame:
     """frame-000000.color.png, .depth.png in millimetres (65535: none), .pose.txt."""
-    depth = _sibling(colour, ".color", ".depth")
+    depth, rgb = _sibling(colour, ".color", ".depth"), read_rgb(colour)[0]
     return ScanFrame(
-        rgb=read_rgb(colour)[0],
+        rgb=rgb,
         depth_m=read_depth(depth, MILLIMETRE)[0],
-        lens=SEVEN_SCENES,
+        lens=np.array(SEVEN_SCENES) * rgb.shape[1] / 640,
         files={"rgb": colour, "depth": depth},
         notes=("7-Scenes: the camera is the published one of the depth; colours are up to some centimetres off.",),
     )

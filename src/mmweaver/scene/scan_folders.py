@@ -5,8 +5,7 @@ dropped. Phones store pictures in the sensor's orientation; the recorded pose te
 rotated upright. Facts of the formats: table in docs/photos.md.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,14 +14,15 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.core.pinhole import resized, rotated_clockwise
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
-from mmweaver.core.safe_files.regular_files import foreign_errors
-from mmweaver.core.safe_files.safe_text import read_json, read_text
-from mmweaver.core.shapes import DepthPixels, RgbPixels
+from mmweaver.core.safe_files.safe_text import read_json
+from mmweaver.core.shapes import DepthPixels
 from mmweaver.scene.photo.capture_photo import CapturedPhoto, Pose, PosedPhoto
 from mmweaver.scene.photo.depth_grid import fill_scattered_holes
 from mmweaver.scene.photo.lzfse import read_lzfse
 from mmweaver.scene.photo.picture_files import read_depth, read_rgb, read_video_frame
 from mmweaver.scene.read_photo import to_common_size
+from mmweaver.scene.scan_data_sets import DATA_SETS, last_number
+from mmweaver.scene.scan_format import ScanFormat, ScanFrame, checked_pose, number_table
 
 MILLIMETRE, TUM_UNIT_M = 0.001, 0.0002
 MAX_DOUBTFUL = 0.7  # share of the depth; if more has the lowest confidence, all of it is kept
@@ -39,37 +39,6 @@ DEGREES_A_METRE = 30.0  # rotation that reveals as much of the room as a metre o
 ENOUGH = 1.0  # metres, or the equivalent rotation: nearer frames are redundant
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Frame:
-    """One frame of a scan, pictures in their stored orientation."""
-
-    rgb: RgbPixels
-    depth_m: DepthPixels
-    lens: Any  # fx, fy, cx, cy of the colours
-    files: dict[str, Path]
-    confidence: np.ndarray | None = None  # of the depth; 0 is the lowest
-    notes: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Format:
-    """A kind of scan folder.
-
-    Args:
-        markers: Files and folders that identify the format.
-        pictures: Glob patterns of the pictures whose stems number the frames; the first pattern with matches counts.
-        read: Reads the frame of a picture of the folder.
-        pose: Pose of that frame as stored, camera (x right, y down, z forward) to world; None if the scan has none.
-        up: Axis of the world that points up; None if pictures are stored upright.
-    """
-
-    markers: tuple[str, ...]
-    pictures: tuple[str, ...]
-    read: Callable[[Path, Path], _Frame]
-    pose: Callable[[Path, Path], Pose | None]
-    up: int | None
-
-
 def scan_kind(folder: Path) -> str | None:
     """Recognizes the app or data set that wrote a folder.
 
@@ -82,8 +51,9 @@ def scan_kind(folder: Path) -> str | None:
     >>> scan_kind(Path("no_such_folder")) is None
     True
     """
-    known = (kind for kind, one in FORMATS.items() if all((folder / name).exists() for name in one.markers))
-    return next(known, None)
+    if not folder.is_dir():
+        return None
+    return next((kind for kind, one in FORMATS.items() if all(any(folder.glob(name)) for name in one.markers)), None)
 
 
 def scan_pose(folder: Path, kind: str, frame: Path) -> Pose | None:
@@ -136,10 +106,10 @@ def read_scan_photo(folder: Path, index: int = 0, further: Sequence[int] | str =
     """
     kind = scan_kind(folder)
     if kind is None:
-        raise InputError(f"{folder} is no scan of Stray Scanner, Record3D, Polycam (raw data), ScanNet or TUM RGB-D")
+        raise InputError(f"{folder} is no scan of {', '.join(FORMATS)}")
     found = (sorted(folder.glob(pattern)) for pattern in FORMATS[kind].pictures)
     named = next((files for files in found if files), [])
-    pictures = sorted((one for one in named if one.stem.replace(".", "", 1).isdigit()), key=lambda one: float(one.stem))
+    pictures = sorted((one for one in named if last_number(one) >= 0), key=last_number)
     photo, files, notes, turns = _upright_photo(folder, kind, pictures, index)
     others: list[PosedPhoto] = []
     if further:
@@ -191,14 +161,14 @@ def _upright_pose(folder: Path, kind: str, picture: Path, turns: int) -> Pose:
     return pose @ np.linalg.matrix_power(quarter, turns).T
 
 
-def _camera(frame: _Frame) -> CameraIntrinsics:
+def _camera(frame: ScanFrame) -> CameraIntrinsics:
     (height, width), (fx, fy, cx, cy) = frame.rgb.shape[:2], map(float, frame.lens)
     if not (0.2 * width < fx < 20 * width and 0.5 < fx / fy < 2 and 0 < cx < width and 0 < cy < height):
         raise InputError(f"no camera of {width} x {height} pixels has fx {fx:g}, fy {fy:g}, cx {cx:g}, cy {cy:g}")
     return CameraIntrinsics(fx=fx, fy=fy, cx=cx, cy=cy, width=width, height=height)
 
 
-def _drop_doubtful(frame: _Frame) -> tuple[DepthPixels, tuple[str, ...]]:
+def _drop_doubtful(frame: ScanFrame) -> tuple[DepthPixels, tuple[str, ...]]:
     """Depth without the pixels of the lowest confidence."""
     depth_m = frame.depth_m
     if frame.confidence is None:
@@ -242,20 +212,9 @@ def spread_out(poses: Sequence[Pose | None], first: int, most: int = 5) -> list[
 
 
 # Pieces of several formats ------------------------------------------------------------------------------------------
-def _table(path: Path) -> np.ndarray:
-    """Rows of numbers separated by commas or spaces; a header line and comments (#) are skipped."""
-    lines = [line.replace(",", " ").split() for line in read_text(path).splitlines() if not line.startswith("#")]
-    rows = [line for line in lines if line]
-    with foreign_errors(path, "no table of numbers ({reason}); export the scan again"):
-        try:
-            return np.array(rows, float).reshape(len(rows), -1)
-        except ValueError:
-            return np.array(rows[1:], float).reshape(len(rows) - 1, -1)
-
-
 def _nearest_pose(path: Path, key: float, column: int, values: slice, apart: float) -> Pose | None:
     """The pose (position, quaternion x y z w) of a table whose key is nearest, within `apart`."""
-    rows = _table(path) if path.is_file() else np.zeros((0, 0))
+    rows = number_table(path) if path.is_file() else np.zeros((0, 0))
     if rows.shape[1] < values.stop or not len(rows):
         return None
     nearest = int(np.argmin(np.abs(rows[:, column] - key)))
@@ -277,31 +236,23 @@ def _quaternion_pose(values: Any, own_axes: np.ndarray | None = None) -> Pose | 
     return pose if own_axes is None else pose @ own_axes
 
 
-def _matrix(pose: np.ndarray) -> Pose | None:
-    """Validated pose; None if invalid (ScanNet writes -inf where tracking was lost)."""
-    if pose.shape != (4, 4) or not np.isfinite(pose).all():
-        return None
-    is_rotation = np.abs(pose[:3, :3] @ pose[:3, :3].T - np.eye(3)).max() < 1e-2
-    return pose if is_rotation else None
-
-
 def _confidence(file: Path) -> np.ndarray | None:
     return read_rgb(file)[0][..., 0] if file.is_file() else None
 
 
 # Formats ------------------------------------------------------------------------------------------------------------
-def _stray(folder: Path, depth: Path) -> _Frame:
+def _stray(folder: Path, depth: Path) -> ScanFrame:
     """rgb.mp4, depth/000000.png in millimetres, confidence/ (0, 1, 2), camera_matrix.csv of the video, odometry.csv.
 
     The table has poses and, of newer versions, the camera of each frame.
     """
     video, number = folder / "rgb.mp4", int(depth.stem)
-    matrix = _table(folder / "camera_matrix.csv")
+    matrix = number_table(folder / "camera_matrix.csv")
     if matrix.shape != (3, 3):
         raise InputError(f"{folder / 'camera_matrix.csv'} holds {matrix.shape} numbers; it must be 3 x 3")
-    said = _table(folder / "odometry.csv") if (folder / "odometry.csv").is_file() else np.zeros((0, 0))
+    said = number_table(folder / "odometry.csv") if (folder / "odometry.csv").is_file() else np.zeros((0, 0))
     own = said[said[:, 1] == number] if said.shape[1] >= 13 else said[:0]
-    return _Frame(
+    return ScanFrame(
         rgb=read_video_frame(video, number, "phone"),
         depth_m=read_depth(depth, MILLIMETRE)[0],
         lens=own[0, 9:13] if len(own) else matrix[[0, 1, 0, 1], [0, 1, 2, 2]],
@@ -314,7 +265,7 @@ def _stray_pose(folder: Path, depth: Path) -> Pose | None:
     return _nearest_pose(folder / "odometry.csv", float(depth.stem), 1, slice(2, 9), apart=0.5)
 
 
-def _record3d(folder: Path, colour: Path) -> _Frame:
+def _record3d(folder: Path, colour: Path) -> ScanFrame:
     """An unpacked .r3d: metadata (JSON: w, h, dw, dh, K by columns, perFrameIntrinsicCoeffs, poses), rgbd/0.jpg,
     rgbd/0.depth (float32 metres, LZFSE), rgbd/0.conf (0, 1, 2; LZFSE).
 
@@ -334,7 +285,7 @@ def _record3d(folder: Path, colour: Path) -> _Frame:
         raise InputError(f"{folder / 'metadata'} has other sizes than its pictures; export the scan again")
     depth_m = np.frombuffer(read_lzfse(depth, 4 * rows * columns), "<f4").reshape(rows, columns).astype(np.float64)
     confidence = np.frombuffer(read_lzfse(doubt, rows * columns), np.uint8) if doubt.is_file() else None
-    return _Frame(
+    return ScanFrame(
         rgb=rgb,
         depth_m=np.where(np.isfinite(depth_m) & (depth_m > 0), depth_m, np.nan),
         lens=lens,
@@ -351,7 +302,7 @@ def _record3d_pose(folder: Path, colour: Path) -> Pose | None:
     return _quaternion_pose([*values[4:7], *values[:4]], Y_UP_CAMERA)
 
 
-def _polycam(folder: Path, colour: Path) -> _Frame:
+def _polycam(folder: Path, colour: Path) -> ScanFrame:
     """keyframes/: images, depth in millimetres, confidence (0, 127, 255) and cameras (JSON with fx, fy, cx, cy and the
     pose t_ij, y up).
     """
@@ -361,7 +312,7 @@ def _polycam(folder: Path, colour: Path) -> _Frame:
         lens = [float(said[key]) for key in ("fx", "fy", "cx", "cy")]
     except (KeyError, TypeError, ValueError):
         raise InputError(f"{place} lacks fx, fy, cx, cy") from None
-    return _Frame(
+    return ScanFrame(
         rgb=read_rgb(colour)[0],
         depth_m=read_depth(depth, MILLIMETRE)[0],
         lens=lens,
@@ -380,16 +331,16 @@ def _polycam_pose(folder: Path, colour: Path) -> Pose | None:
         rows = [[float(said[f"t_{row}{column}"]) for column in range(4)] for row in range(3)]
     except (KeyError, TypeError, ValueError):
         return None
-    return _matrix(np.array([*rows, [0.0, 0.0, 0.0, 1.0]]) @ Y_UP_CAMERA)
+    return checked_pose(np.array([*rows, [0.0, 0.0, 0.0, 1.0]]) @ Y_UP_CAMERA)
 
 
-def _scannet(folder: Path, colour: Path) -> _Frame:
+def _scannet(folder: Path, colour: Path) -> ScanFrame:
     """color/0.jpg, depth/0.png in millimetres, intrinsic/intrinsic_color.txt, pose/0.txt (camera to world, z up)."""
     depth, intrinsic = folder / "depth" / f"{colour.stem}.png", folder / "intrinsic" / "intrinsic_color.txt"
-    matrix = _table(intrinsic)
+    matrix = number_table(intrinsic)
     if matrix.shape[0] < 3 or matrix.shape[1] < 3:
         raise InputError(f"{intrinsic} holds no 4 x 4 matrix")
-    return _Frame(
+    return ScanFrame(
         rgb=read_rgb(colour)[0],
         depth_m=read_depth(depth, MILLIMETRE)[0],
         lens=matrix[[0, 1, 0, 1], [0, 1, 2, 2]],
@@ -399,10 +350,10 @@ def _scannet(folder: Path, colour: Path) -> _Frame:
 
 def _scannet_pose(folder: Path, colour: Path) -> Pose | None:
     file = folder / "pose" / f"{colour.stem}.txt"
-    return _matrix(_table(file)) if file.is_file() else None
+    return checked_pose(number_table(file)) if file.is_file() else None
 
 
-def _tum(folder: Path, colour: Path) -> _Frame:
+def _tum(folder: Path, colour: Path) -> ScanFrame:
     """rgb/ and depth/ with PNGs named by their time in seconds, depth in 0.2 mm."""
     time_s = float(colour.stem)
     depths = [one for one in (folder / "depth").glob("*.png") if one.stem.replace(".", "", 1).isdigit()]
@@ -412,7 +363,7 @@ def _tum(folder: Path, colour: Path) -> _Frame:
     which = next((name for name in TUM_CAMERAS if name and name in str(folder.resolve())), "")
     rgb = read_rgb(colour)[0]
     note = f"The camera is that of {which}." if which else "No freiburg1, 2 or 3 in the folder's name: ROS's camera."
-    return _Frame(
+    return ScanFrame(
         rgb=rgb,
         depth_m=read_depth(depth, TUM_UNIT_M)[0],
         lens=np.array(TUM_CAMERAS[which]) * rgb.shape[1] / 640,
@@ -426,27 +377,28 @@ def _tum_pose(folder: Path, colour: Path) -> Pose | None:
 
 
 FORMATS = {
-    "Stray Scanner": _Format(
+    "Stray Scanner": ScanFormat(
         markers=("camera_matrix.csv", "depth"), pictures=("depth/*.png",), read=_stray, pose=_stray_pose, up=1
     ),
-    "Record3D": _Format(
+    "Record3D": ScanFormat(
         markers=("metadata", "rgbd"), pictures=("rgbd/*.jpg",), read=_record3d, pose=_record3d_pose, up=1
     ),
-    "Polycam": _Format(
+    "Polycam": ScanFormat(
         markers=("keyframes/depth",),
         pictures=("keyframes/corrected_images/*.jpg", "keyframes/images/*.jpg"),
         read=_polycam,
         pose=_polycam_pose,
         up=1,
     ),
-    "ScanNet": _Format(
+    "ScanNet": ScanFormat(
         markers=("intrinsic", "color", "depth"),
         pictures=("color/*.jpg", "color/*.png"),
         read=_scannet,
         pose=_scannet_pose,
         up=2,
     ),
-    "TUM RGB-D": _Format(
+    **DATA_SETS,
+    "TUM RGB-D": ScanFormat(
         markers=("rgb", "depth"), pictures=("rgb/*.png", "rgb/*.jpg"), read=_tum, pose=_tum_pose, up=None
     ),
 }

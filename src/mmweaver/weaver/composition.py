@@ -6,17 +6,21 @@ from dataclasses import replace
 import numpy as np
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.options import Place
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.range_window import with_range
-from mmweaver.core.records import Scene
+from mmweaver.core.records import Breathing, Scene
+from mmweaver.core.seeding import stream
+from mmweaver.core.targets import Thing
 from mmweaver.motion.compose import Motion
 from mmweaver.motion.mocap.clip_placement import place_clip
 from mmweaver.motion.multi_person import compose_people
 from mmweaver.motion.people import subject_of
+from mmweaver.motion.physiology import held_breaths
 from mmweaver.motion.planning.missing import FURNISH, missing_things
 from mmweaver.motion.verification.verify import check_done
 from mmweaver.weaver.generation import Room
-from mmweaver.weaver.parsed_request import ParsedRequest
+from mmweaver.weaver.parsed_request import ParsedRequest, PersonRequest
 
 NEAREST_M, FARTHEST_M, MARGIN_M = 0.3, 12.0, 0.3  # of widened windows: limits, and beyond the body
 GAIN = 0.05  # less loss than this is not worth another window
@@ -69,7 +73,7 @@ def compose_request(request: ParsedRequest, scene: Scene) -> tuple[Motion, ...]:
     )
     for person in people if request.strict else ():
         check_done(person.plan.text, person.clauses)
-    return people
+    return tuple(_breathing(*pair) for pair in zip(people, request.people, strict=True))
 
 
 def lost_of(people: Sequence[Motion]) -> float:
@@ -168,3 +172,57 @@ def furnished_room(request: ParsedRequest, room: Room) -> Room:
             if place is not None:  # else a place of the room stands in for it
                 room = room.with_furniture(place, seed=request.seed)
     return room
+
+
+def with_targets(room: Room, request: ParsedRequest) -> Room:
+    """The room with the things and reflectors of a request, each thing at its place or at a free one.
+
+    Args:
+        room: The room in the camera's coordinates.
+        request: The parsed request.
+
+    Raises:
+        InputError: For reflectors in front of a background recording, which does not hold them.
+    """
+    if not request.things and not request.reflectors and not request.interferers:
+        return room
+    if request.reflectors and room.background is not None:
+        raise InputError("a background recording has its own echoes; leave out --reflector or --background")
+    things: list[Thing] = []
+    for number, thing in enumerate(request.things):
+        seed = int(stream(request.seed, "thing", number).integers(2**31))
+        taken = [one.place_m for one in (*things, *request.things) if one.place_m is not None]
+        place = thing.place_m or free_place(room.scene, request.range_window_m, seed, taken)
+        things.append(replace(thing, place_m=place, seed=seed))
+    targets = {"things": tuple(things), "reflectors": request.reflectors, "interferers": request.interferers}
+    return replace(room, scene=replace(room.scene, **targets))
+
+
+def free_place(
+    scene: Scene, range_window_m: tuple[float, float], seed: int, taken: Sequence[Place] = ()
+) -> tuple[float, float]:
+    """A free place on the floor in the radar's view, for a thing.
+
+    Args:
+        scene: The room in the camera's coordinates.
+        range_window_m: Nearest and farthest range that the radar keeps.
+        seed: Seed of the place.
+        taken: Places (x, y) to keep 0.8 m away from where there is room.
+    """
+    space, rng = scene.free_space, stream(seed, "thing place")
+    x, y = np.meshgrid(space.x_m, space.y_m)
+    distance = np.hypot(x, y)
+    good = space.is_free & (distance > max(range_window_m[0], 1.0)) & (distance < min(range_window_m[1], 5.0))
+    good &= np.abs(np.arctan2(x, y)) < np.radians(40)
+    apart = good & np.all([np.hypot(x - one[0], y - one[1]) > 0.8 for one in taken] or [good], axis=0)
+    cells = np.argwhere(apart if apart.any() else good)
+    if not len(cells):  # a room without free floor: beyond the person's usual place
+        return 0.6, float(np.clip(2.5, *range_window_m))
+    row, column = cells[rng.integers(len(cells))]
+    return float(space.x_m[column]), float(space.y_m[row])
+
+
+def _breathing(motion: Motion, person: PersonRequest) -> Motion:
+    """The motion with the breathing that the text asks for."""
+    asked = Breathing(per_minute=person.breaths_per_minute, held_s=held_breaths(motion.plan.steps))
+    return motion if asked == Breathing() else replace(motion, pose=replace(motion.pose, breathing=asked))

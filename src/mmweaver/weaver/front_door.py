@@ -36,12 +36,14 @@ from mmweaver.motion.compose import Motion
 from mmweaver.motion.continuous import ContinuousMotion
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.read_motion import read_motion
+from mmweaver.motion.physiology import living
 from mmweaver.motion.planning.placement import Conditions
 from mmweaver.propagation.rays import Rays
 from mmweaver.propagation.static_paths import ALL_PATHS
+from mmweaver.propagation.things import ThingPaths
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from, unseen_notes
 from mmweaver.signal.detection import check_points, detect, needs_adc
-from mmweaver.weaver.composition import compose_request, furnished_room, widened
+from mmweaver.weaver.composition import compose_request, furnished_room, widened, with_targets
 from mmweaver.weaver.generation import Generation, Room
 from mmweaver.weaver.parsed_request import ParsedRequest, parse
 from mmweaver.weaver.request import Request
@@ -216,6 +218,9 @@ class Weaver(RoomReader):
             keep_adc: Whether raw samples are returned, several times the cube's memory; the cube does not depend on it.
             board: Board whose errors the signal has: "typical" (sampled by the seed; the default, except with a
                 background, whose board is used), "typical:N", "ideal", a board.json or a `Board` (docs/board.md).
+            reflectors: Each a `Reflector` of known cross section (docs/things.md).
+            interferers: Each an `Interferer`, another radar.
+            things: Each a `Thing` that moves but is nobody: fan, curtain, door, cat ... (docs/things.md).
             radar_poses: One `RadarPose` per radar that records the scene (default: one at the camera).
 
         For several people `at`, `height_m` and `subject` are lists.
@@ -293,6 +298,7 @@ class Weaver(RoomReader):
                 request, people = (
                     widened(request, room.scene) if may_widen else (request, compose_request(request, room.scene))
                 )
+        room = with_targets(room, request)
         scenes = [scene_seen_from(room.scene, pose) for pose in poses]
         results = [self._recorded(request, replace(room, scene=scene), people, stages) for scene in scenes]
         return replace(results[0], further=tuple(results[1:]))
@@ -345,7 +351,11 @@ class Weaver(RoomReader):
         )
         with stages("point cloud"):
             points = detect(signal.cube, signal.adc, self.points, self.firmware_of(board))
-        poses = tuple(resample(one, signal.cube.grid.frame_time_s) for one in motions)
+        time_s = signal.cube.grid.frame_time_s
+        poses = tuple(
+            living(resample(one, time_s), request.seed, pose, time_s[-1] + request.config.frame_period_s)
+            for one in motions
+        )
         adc = signal.adc if request.keep_adc else None
         if adc is not None and self.calibration is not None and not request.config.is_coded:
             adc = self.calibration.recorded(adc)
@@ -354,7 +364,12 @@ class Weaver(RoomReader):
         meta = self._meta(request, room, people, poses, signal, board)
         if request.radar_poses:
             meta["radar_pose"] = pose
+        things = ThingPaths(room.scene, request.config).truth(time_s)
+        if things:
+            meta["things"] = [{"kind": one.kind, "starts_at_m": one.place_m[0], **one.facts} for one in things]
+        meta |= {name: one for name in ("reflectors", "interferers") if (one := getattr(room.scene, name))}
         return Generation(
+            things=things,
             cube=signal.cube,
             points=points,
             adc=adc,
@@ -470,6 +485,7 @@ def _person(pose: PoseSequence, motion: Motion) -> dict[str, Any]:
         "subject": pose.subject,
         "girth": pose.girth,
         **drawn,
+        **({} if pose.vitals is None else {name: getattr(pose.vitals, name) for name in ("breathing_hz", "heart_hz")}),
         "starts_at_m": path_m[0],
         "ends_at_m": path_m[-1],
         "path_length_m": round(float(np.linalg.norm(np.diff(path_m, axis=0), axis=1).sum()), 3),

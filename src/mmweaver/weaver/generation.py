@@ -15,7 +15,9 @@ from mmweaver.core.placed_thing import PlacedThing
 from mmweaver.core.record_values import ShownByFacts
 from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, RgbdPhoto, Scene
 from mmweaver.core.stages import Stages
-from mmweaver.io.result_folder import BOARD_FILE, file_digest, plain, radar_folder, save_results
+from mmweaver.io.npz_files import write_npz
+from mmweaver.io.result_folder import BOARD_FILE, THINGS_FILE, file_digest, plain, radar_folder, save_results
+from mmweaver.propagation.things import ThingTruth
 from mmweaver.scene.affordances.landmarks import add_landmarks
 from mmweaver.scene.photo.capture_photo import PosedPhoto
 from mmweaver.viz.figure_data import FigureData
@@ -129,6 +131,7 @@ class Generation(ShownByFacts):
         stages: Duration of each stage.
         board: Board whose errors the signal has.
         further: Simultaneous signals of other radars.
+        things: Ground truth of everything that moves but is nobody.
     """
 
     cube: RadarCube
@@ -141,6 +144,7 @@ class Generation(ShownByFacts):
     stages: Stages
     board: Board = IDEAL_BOARD
     further: tuple["Generation", ...] = ()
+    things: tuple[ThingTruth, ...] = ()
 
     @property
     def radars(self) -> tuple["Generation", ...]:
@@ -317,6 +321,17 @@ class Generation(ShownByFacts):
             stages=self.stages,
             pictures=PREVIEWS if pictures else None,
             extra=extra,
+            more=self._write_things if self.things else None,
+        )
+
+    def _write_things(self, folder: Path) -> None:
+        """Writes things.npz: kinds, places and velocities of all things at the radar's frames."""
+        write_npz(
+            folder / THINGS_FILE,
+            kind=np.array([one.kind for one in self.things]),
+            place_m=np.stack([one.place_m for one in self.things]),
+            velocity_mps=np.stack([one.velocity_mps for one in self.things]),
+            frame_time_s=self.cube.grid.frame_time_s,
         )
 
     def _save_each(self, out: Path, *, overwrite: bool, extra: dict[str, str] | None, **options: Any) -> dict[str, Any]:

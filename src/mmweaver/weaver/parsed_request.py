@@ -13,15 +13,17 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.options import Place
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import RadarPose, check_poses
+from mmweaver.core.targets import MAX_TARGETS, Interferer, Reflector, Thing, things_of_text
 from mmweaver.io.result_folder import radar_meta
 from mmweaver.motion.empty_floor import NOBODY, says_nobody
-from mmweaver.motion.language.plan import APPROXIMATED, MotionPlan
+from mmweaver.motion.language.plan import APPROXIMATED, DONE, MotionPlan
 from mmweaver.motion.language.postures import add_shown_text
 from mmweaver.motion.language.sentence import SentenceParser, parse_sentence
 from mmweaver.motion.language.timing import natural_s, repeated, schedule
 from mmweaver.motion.mocap.clip import MotionClip, check_lasts
 from mmweaver.motion.multi_person import MOST_PEOPLE
 from mmweaver.motion.people import check_subject
+from mmweaver.motion.physiology import HOLDING, breathing_rate_of
 from mmweaver.motion.planning.missing import STAND_IN
 from mmweaver.motion.planning.targets import SHORTEST_PATH_M
 from mmweaver.motion.register_activity import load_activity_plugins
@@ -45,6 +47,7 @@ class PersonRequest:
     start_m: Place | None = None  # (x, y) on the floor, in the radar's coordinates
     height_m: float | None = None
     subject: int | None = None  # number of the person
+    breaths_per_minute: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,6 +64,9 @@ class ParsedRequest:
     keep_adc: bool = False
     board: Board | None = None  # None: a typical one of this seed, or that of a background recording
     radar_poses: tuple[RadarPose, ...] = ()  # none: one radar at the camera
+    reflectors: tuple[Reflector, ...] = ()
+    things: tuple[Thing, ...] = ()
+    interferers: tuple[Interferer, ...] = ()
     missing: str = STAND_IN  # what is done about things that the room lacks
     strict: bool = False  # whether what is not done is refused
     parser: str | None = None  # the language model that reads sentences; None: the grammar
@@ -136,7 +142,11 @@ def parse(asked: Request, radar: RadarConfig, *, needs_adc: bool = False) -> Par
     texts, motion = asked.sentences, asked.motion
     if not 1 <= len(texts) <= MOST_PEOPLE:
         raise InputError(f"give 1 to {MOST_PEOPLE} texts, one for each person, not {len(texts)}")
-    is_empty = _asks_for_nobody(asked)
+    acts, named = zip(*map(things_of_text, texts), strict=True)
+    things = (*asked.things, *(Thing(kind=kind) for kinds in named for kind in kinds))
+    if max(len(things), len(asked.reflectors)) > MAX_TARGETS:
+        raise InputError(f"give at most {MAX_TARGETS} things and {MAX_TARGETS} reflectors")
+    is_empty = _asks_for_nobody(replace(asked, text=list(acts)))
     starts = _starts(asked.at, len(texts))
     check_poses(tuple(asked.radar_poses))
     config = radar if asked.fps is None else replace(radar, frame_period_s=1 / asked.fps)
@@ -144,9 +154,10 @@ def parse(asked: Request, radar: RadarConfig, *, needs_adc: bool = False) -> Par
     count = _frames_asked_for(asked, config)
     if count is not None:
         _check_size(config, count, has_adc)
+    acts, rates = zip(*map(breathing_rate_of, acts), strict=True)
     plans: list[MotionPlan | None] = [
         None if is_empty or (motion is not None and index == 0) else parsed_text(one, asked.parser)
-        for index, one in enumerate(texts)
+        for index, one in enumerate(acts)
     ]
     if asked.path_m is not None:
         plans[0] = _along(plans[0], asked.path_m)
@@ -159,12 +170,13 @@ def parse(asked: Request, radar: RadarConfig, *, needs_adc: bool = False) -> Par
     people = tuple(
         PersonRequest(
             text=text,
-            plan=_scheduled(plan, duration_s),
+            plan=_scheduled(_with_held_breath(plan), duration_s),
             start_m=start,
             height_m=None if height is None else float(height),
             subject=None if who is None else check_subject(who),
+            breaths_per_minute=rate,
         )
-        for text, plan, start, height, who in zip(texts, plans, starts, heights, subjects, strict=True)
+        for text, plan, start, height, who, rate in zip(texts, plans, starts, heights, subjects, rates, strict=True)
     )
     return ParsedRequest(
         people=() if is_empty else people,
@@ -177,6 +189,9 @@ def parse(asked: Request, radar: RadarConfig, *, needs_adc: bool = False) -> Par
         keep_adc=asked.keep_adc,
         board=None if asked.board is None else find_board(asked.board, config, asked.seed),
         radar_poses=tuple(asked.radar_poses),
+        reflectors=tuple(asked.reflectors),
+        things=things,
+        interferers=tuple(asked.interferers),
         missing=asked.missing,
         strict=asked.strict,
         parser=asked.parser,
@@ -283,6 +298,18 @@ def _along(plan: MotionPlan | None, path_m: Sequence[Place]) -> MotionPlan:
         for number in walk.clauses:
             clauses[number] = clauses[number].lowered_to(APPROXIMATED, notes[-1])
     return replace(plan, steps=tuple(steps), notes=(*plan.notes, *notes), clauses=add_shown_text(clauses, steps))
+
+
+def _with_held_breath(plan: MotionPlan | None) -> MotionPlan | None:
+    """The plan without the note that a held breath is not shown: breathing is simulated and stops."""
+    if plan is None or not any(HOLDING.search(one.clause) for one in plan.clauses):
+        return plan
+    held = [one.clause for one in plan.clauses if HOLDING.search(one.clause)]
+    clauses = tuple(
+        replace(one, status=DONE, how="the breath is held") if one.clause in held else one for one in plan.clauses
+    )
+    notes = tuple(note for note in plan.notes if not any(repr(clause) in note for clause in held))
+    return replace(plan, clauses=clauses, notes=notes)
 
 
 def _scheduled(plan: MotionPlan | None, duration_s: float) -> MotionPlan | None:

@@ -14,6 +14,7 @@ from mmweaver.core.options import Place, Source, option, options
 if TYPE_CHECKING:
     from mmweaver.core.board import Board
     from mmweaver.core.radar_pose import RadarPose
+    from mmweaver.core.targets import Interferer, Reflector, Thing
     from mmweaver.motion.mocap.clip import MotionClip
 
 
@@ -43,6 +44,39 @@ def radar_pose(word: str) -> "RadarPose":
     from mmweaver.core.radar_pose import RadarPose
 
     return RadarPose.of_words(word)
+
+
+def reflector(word: str) -> "Reflector":
+    """Parses '0.5,2,0,10': place of a reflector in metres and its cross section in dBsm.
+
+    Raises:
+        InputError: For any other form.
+    """
+    from mmweaver.core.targets import Reflector
+
+    return Reflector.of_words(word)
+
+
+def thing(word: str) -> "Thing":
+    """Parses 'fan=1,2': a thing that moves and its place in metres.
+
+    Raises:
+        InputError: For any other form.
+    """
+    from mmweaver.core.targets import Thing
+
+    return Thing.of_words(word)
+
+
+def interferer(word: str) -> "Interferer":
+    """Parses '0.5,3,0': place of another radar in metres.
+
+    Raises:
+        InputError: For any other form.
+    """
+    from mmweaver.core.targets import Interferer
+
+    return Interferer.of_words(word)
 
 
 @options
@@ -133,6 +167,35 @@ class Request:
         kind=radar_pose,
         many=True,
         name="radar-pose",
+    )
+    reflectors: "Sequence[Reflector]" = option(
+        "a reflector of known cross section: metres right of, ahead of and above the camera, dBsm, and perhaps corner"
+        " (default, facing the camera), sphere or plate; once more for each further one (docs/things.md)",
+        "X,Y,Z,DBSM[,SHAPE]",
+        default=(),
+        kind=reflector,
+        many=True,
+        name="reflector",
+    )
+    things: "Sequence[Thing]" = option(
+        "something that moves but is nobody, at metres right of and ahead of the camera (default: a free place by"
+        " seed), facing DEG degrees (0 towards the camera): fan, ceiling_fan, curtain, door, vacuum, cat, dog, plant,"
+        " washing_machine; once more for each further one (docs/things.md)",
+        "KIND[=X,Y[,DEG]]",
+        default=(),
+        kind=thing,
+        many=True,
+        name="thing",
+    )
+    interferers: "Sequence[Interferer]" = option(
+        "another FMCW radar that faces the camera, at metres right of, ahead of and above it, and perhaps its EIRP in"
+        " dBm (default 22.5): its chirps cross those of the radar (docs/things.md)",
+        "X,Y,Z[,DBM]",
+        default=(),
+        kind=interferer,
+        many=True,
+        name="interferer",
+        rare=True,
     )
     board: "str | Path | Board | None" = option(
         "the board whose errors the signal has: typical, sampled by the seed from the spread of recorded boards"

@@ -43,7 +43,8 @@ class RoomReader:
             rgb: Colour picture.
             depth: 16-bit PNG, or .npy in metres; None to estimate it.
             camera: JSON of the camera's intrinsics.
-            **seen: `depth_model` estimates a missing depth; `classes` (a picture of class numbers) or the models
+            **seen: `depth_model` estimates a missing depth; `depth_unit` and `depth_kind` say what a depth picture
+                holds; `classes` (a picture of class numbers) or the models
                 `segmenter` and `sam` give the class of each pixel, which determines materials. See
                 `scene.read_photo.read_photo`.
 
@@ -175,7 +176,7 @@ class RoomReader:
             return self.read_capture(place, **known)
         refuse_unread(place)
         files = RoomFiles.find(place)
-        known = _known(how, "a photo", "classes", "segmenter", "sam")
+        known = _known(how, "a photo", "classes", "segmenter", "sam", "depth_unit", "depth_kind")
         return self.read_room(files.rgb, files.depth, files.camera, **known)
 
     def sample_room(self) -> Room:

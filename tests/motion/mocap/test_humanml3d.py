@@ -5,8 +5,8 @@ import pytest
 from mocap_files import walk
 
 from mmweaver.core.errors import InputError
+from mmweaver.motion.mocap.humanml3d_features import features_from_joints, y_up
 from mmweaver.motion.mocap.joint_arrays import CONTACTS, ROTATIONS, VELOCITIES, joints_from_features
-from tests.motion.humanml3d_features import features_from_joints, y_up
 
 
 def test_joints_come_back():

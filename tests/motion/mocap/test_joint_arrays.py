@@ -8,8 +8,8 @@ from mocap_files import walk, y_up
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import JOINT_NAMES, joint
+from mmweaver.motion.mocap.humanml3d_features import features_from_joints
 from mmweaver.motion.mocap.joint_arrays import CMU_NAMES, clips_of, read_npy, read_npz
-from tests.motion.humanml3d_features import features_from_joints
 
 
 @pytest.mark.parametrize("shape", ["22x3", "66", "24x3", "1x22x3"])

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from mmweaver.core.records import PointCloud
-from mmweaver.core.shapes import PerPoint
+from mmweaver.core.shapes import PerIndex, PerPoint
 
 MISSING = float("nan")
 MAX_MISSING = 10_000  # frames; a larger step of the counter is a restart
@@ -22,12 +22,14 @@ class LoggedCloud(PointCloud):
     """A PointCloud stored by a board or a data set, with `intensity` in its own unit (nan if missing).
 
     x to the right, y away from the radar, z up; `frame` counts from 0. `num_frames` includes frames without points,
-    those that the log lacks and those at its end; `notes` are sentences on what was found.
+    those that the log lacks and those at its end; `notes` are sentences on what was found. `missing` are the frames
+    that the board counted and the log lacks; None where the format does not tell them from frames without points.
     """
 
     intensity: PerPoint
     num_frames: int
     notes: tuple[str, ...] = ()
+    missing: PerIndex | None = None
 
 
 Reader = Callable[[Path], LoggedCloud]
@@ -76,6 +78,7 @@ def logged_cloud(
     intensity: np.ndarray | None = None,
     num_frames: int | None = None,
     notes: tuple[str, ...] = (),
+    missing: np.ndarray | None = None,
 ) -> LoggedCloud:
     """Builds a cloud from columns; missing columns become nan.
 
@@ -87,6 +90,7 @@ def logged_cloud(
         intensity: Intensity in the unit of the source, (point,). Default: missing.
         num_frames: Number of frames. Default: up to the last point.
         notes: Sentences on what was found. Default: none.
+        missing: Frames that the log is known to lack, (missing,). Default: unknown.
 
     Returns:
         The cloud.
@@ -103,16 +107,18 @@ def logged_cloud(
         intensity=nothing if intensity is None else np.asarray(intensity, float),
         num_frames=(int(np.max(frame)) + 1 if len(frame) else 0) if num_frames is None else num_frames,
         notes=notes,
+        missing=missing,
     )
 
 
 @dataclass(frozen=True, kw_only=True)
 class CountedFrames:
-    """Frame of each packet by the board's own counter, the number of frames, and sentences on losses."""
+    """Frame of each packet by the board's own counter, the number of frames, sentences on losses, missing frames."""
 
     frame: np.ndarray
     num_frames: int
     notes: tuple[str, ...]
+    missing: np.ndarray
 
 
 def counted_frames(number: np.ndarray) -> CountedFrames:
@@ -130,9 +136,11 @@ def counted_frames(number: np.ndarray) -> CountedFrames:
     step = np.diff(number.astype(np.int64))
     is_restart = (step < 0) | (step > MAX_MISSING)
     frame = np.concatenate([[0], np.cumsum(np.where(is_restart, 1, step))]).astype(int)[: len(number)]
-    missing, restarts = int((step[~is_restart] - 1).clip(0).sum()), int(is_restart.sum())
+    restarts = int(is_restart.sum())
     total = int(frame[-1]) + 1 if len(frame) else 0
-    notes = (f"{missing} of {total} frames that the board counted are missing from the log",) if missing else ()
+    missing = np.setdiff1d(np.arange(total), frame)
+    lost = f"{len(missing)} of {total} frames that the board counted are missing from the log"
+    notes = (lost,) if len(missing) else ()
     if restarts:
         notes += (f"the board's counter restarts {restarts} times; the length of these pauses is not known",)
-    return CountedFrames(frame=frame, num_frames=total, notes=notes)
+    return CountedFrames(frame=frame, num_frames=total, notes=notes, missing=missing)

@@ -54,6 +54,7 @@ def read_ti_replay(path: Path) -> LoggedCloud:
         snr_db=table[:, 4],
         num_frames=counted.num_frames,
         notes=counted.notes,
+        missing=counted.missing,
     )
 
 

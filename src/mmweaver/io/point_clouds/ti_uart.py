@@ -114,6 +114,7 @@ def read_ti_uart(path: Path | str) -> UartLog:
         intensity=table[:, 5],
         num_frames=counted.num_frames,
         notes=(*counted.notes, *damaged),
+        missing=counted.missing,
     )
     return UartLog(points=cloud, frame_number=number, skipped=skipped)
 

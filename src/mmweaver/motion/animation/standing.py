@@ -1,4 +1,7 @@
-"""Standing: the pose from which every other activity starts and to which it returns, with sway and breathing."""
+"""Standing: the pose from which every other activity starts and to which it returns.
+
+It is at rest: sway, breathing and tremor are added to all poses by `motion.physiology`.
+"""
 
 from typing import TYPE_CHECKING
 
@@ -6,7 +9,6 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT, Controls
-from mmweaver.motion.animation.profiles import wander
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 
 if TYPE_CHECKING:
@@ -17,6 +19,7 @@ STAND_STRETCH = 0.9955  # of the legs' length
 ANKLE_BEHIND = 0.022  # of the height: the pelvis is slightly in front of the ankles
 HALF_STANCE = 0.056  # of the height: from the midline to a foot
 TOES_OUT_RAD = 0.12
+UNUSED = (74, 16)  # random numbers before the first arm, and between the arms
 ARM_HANGING = (-0.02, 0.13, 0.0, 0.22)  # flexion, abduction, twist, elbow
 
 
@@ -46,7 +49,7 @@ def home_feet(
 
 
 def upright(context: "StepContext") -> Controls:
-    """Controls of a body standing at the root, arms hanging, with sway and breathing.
+    """Controls of a body standing at the root, arms hanging.
 
     Args:
         context: Step with times, body, path and random stream.
@@ -74,21 +77,8 @@ def upright(context: "StepContext") -> Controls:
         knee_room=np.zeros(n),
         contact=np.ones((n, 2)),
     )
-    _sway(controls, time_s, rng)
-    return controls
-
-
-def _sway(controls: Controls, time_s: Float[Array, " n"], rng: np.random.Generator) -> None:
-    """Quiet standing: millimetres at the pelvis, half a degree in the trunk, a breath every three to five seconds."""
-    controls.pelvis_m[:, 0] += 0.004 * wander(time_s, rng, slow_hz=0.15, fast_hz=0.6)
-    controls.pelvis_m[:, 1] += 0.004 * wander(time_s, rng, slow_hz=0.15, fast_hz=0.6)
-    for axis in range(3):
-        controls.spine_rad[:, axis] += 0.012 * wander(time_s, rng, slow_hz=0.15, fast_hz=0.7)
-    breath = np.sin(2 * np.pi * rng.uniform(0.2, 0.33) * time_s + rng.uniform(0, 2 * np.pi))
-    controls.spine_rad[:, 1] -= 0.012 * breath
-    controls.head_rad[:, 0] += 0.012 * breath + 0.02 * wander(time_s, rng, slow_hz=0.1, fast_hz=0.5)
-    controls.head_rad[:, 1] += 0.03 * wander(time_s, rng, slow_hz=0.1, fast_hz=0.5)
+    rng.random(UNUSED[0])  # the numbers of an earlier sway, so that activities keep those that they sample
     for side in (LEFT, RIGHT):
-        controls.arm_rad[:, side, 0] += 0.025 * wander(time_s, rng, slow_hz=0.2, fast_hz=0.8) - 0.01 * breath
-        controls.arm_rad[:, side, 1] += 0.012 * wander(time_s, rng, slow_hz=0.2, fast_hz=0.8)
         controls.arm_rad[:, side, 3] += 0.03 * rng.normal()
+        rng.random(UNUSED[1] * (side == LEFT))
+    return controls

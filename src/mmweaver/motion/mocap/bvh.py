@@ -50,7 +50,7 @@ def read_bvh(path: Path) -> RawMotion:
     Raises:
         InputError: If it is not a BVH file with motion, or damaged.
     """
-    text = read_text(path, errors="replace").replace("{", "\n{\n").replace("}", "\n}\n")
+    text = read_text(path, errors="replace").replace("{", "\n{\n").replace("}", "\n}\n").replace("\t", " ")
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     if not lines or lines[0].upper() != "HIERARCHY":
         raise InputError(f"{path} is no BVH file: it does not begin with HIERARCHY")
@@ -97,7 +97,7 @@ def _hierarchy(lines: list[str], path: Path) -> list[Node]:
 
 
 def _channels(words: list[str], path: Path, line: str) -> tuple[str, ...]:
-    names = tuple(words[1:])
+    names = tuple(word.capitalize() for word in words[1:])
     known = all(name in POSITIONS or name in ROTATIONS for name in names)
     if not words or not words[0].isdigit() or int(words[0]) != len(names) or not known or len(set(names)) < len(names):
         raise InputError(f"{path}: {line[:80]!r} names no channels that are known, or one twice; the file is damaged")

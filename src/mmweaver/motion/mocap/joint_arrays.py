@@ -17,6 +17,7 @@ Joints are recovered from features exactly.
 Reference: Guo et al., Generating Diverse and Natural 3D Human Motions from Text, CVPR 2022 (its data format).
 """
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -80,6 +81,8 @@ NAME_KEYS = ("joint_names", "names")
 CMU_FPS = 120.0
 CMU_NAMES = {int(index): name for index, name in SKELETONS["cmu"].items()}
 MAX_FRAMES = 200_000  # half an hour at 100 frames per second; 0.6 GB while it is read
+MOTION_X, MOTION_X_FPS = 322, 30.0  # numbers per frame: root, body, hands, face, translation, shape
+SMPL_JOINTS = (24, 45, 52, 55, 127, 144)  # of SMPL, SMPL-H and SMPL-X, with and without landmarks
 NORMALISED_BELOW_M = 0.25  # features with a lower mean root height must be normalised
 
 
@@ -87,7 +90,8 @@ def read_npy(path: Path) -> RawMotion:
     """Reads joints or HumanML3D features.
 
     Args:
-        path: .npy with joints (frame, 22, 3) or (frame, 66), or features (frame, 263).
+        path: .npy with joints (frame, 22, 3), (frame, 66) or, as MDM has them, (22, 3, frame); joints of SMPL, SMPL-H
+            and SMPL-X begin with the same 22. Or features (frame, 263), or poses of Motion-X (frame, 322).
 
     Returns:
         The motion; features are in metres, y up, at 20 frames per second.
@@ -106,6 +110,15 @@ def read_npy(path: Path) -> RawMotion:
         values = values[0]  # a batch of one
     if values.ndim == 2 and values.shape[1] == NUM_FEATURES:
         return _read_features(values, path)
+    if values.ndim == 2 and values.shape[1] == MOTION_X:
+        held = {"root_orient": values[:, :3], "pose_body": values[:, 3:66], "trans": values[:, 309:312]}
+        return replace(read_smpl(held, path), kind="Motion-X", fps=MOTION_X_FPS)
+    if values.ndim == 3 and values.shape[:2] == (NUM_JOINTS, 3):
+        return replace(_joints(values.transpose(2, 0, 1), path), fps=FPS)  # of MDM, joint by joint
+    return _joints(values, path)
+
+
+def _joints(values: Array, path: Path) -> RawMotion:
     return RawMotion(names=JOINT_NAMES, positions=_check_22(values, path), kind="joints")
 
 
@@ -176,20 +189,33 @@ def _read_features(values: Float[Array, "frame 263"], path: Path) -> RawMotion:
     if len(values) < 2:
         raise InputError(f"{path} has {len(values)} frames; a motion has at least 2")
     if np.isfinite(values[:, 3]).all() and abs(float(values[:, 3].mean())) < NORMALISED_BELOW_M:
+        mean, std = ((path.parent / name, path.parent.parent / name) for name in ("Mean.npy", "Std.npy"))
+        mean, std = (next((one for one in two if one.is_file()), None) for two in (mean, std))
+        if mean is not None and std is not None:
+            whole = values * _statistics(std) + _statistics(mean)
+            note = f"the features were normalised, and were multiplied by {std.name} and added to {mean.name}"
+            return replace(_read_features(whole, path), notes=(note,))
         raise InputError(
-            f"{path}: the features seem to be normalised (their root is {values[:, 3].mean():.2f} high); multiply by"
-            " Std.npy and add Mean.npy first"
+            f"{path}: the features seem to be normalised (their root is {values[:, 3].mean():.2f} high); put"
+            " HumanML3D's Mean.npy and Std.npy next to the file"
         )
     return RawMotion(
         names=JOINT_NAMES, positions=joints_from_features(values), kind="HumanML3D", fps=FPS, unit_m=1.0, up="y"
     )
 
 
+def _statistics(path: Path) -> Float[Array, " feature"]:
+    values = safe_arrays.read_npy(path)
+    if values.shape != (NUM_FEATURES,) or values.dtype.kind != "f" or not np.isfinite(values).all():
+        raise InputError(f"{path} holds {values.dtype} of shape {values.shape}; it must be ({NUM_FEATURES},)")
+    return values.astype(float)
+
+
 def _check_22(values: Array, path: Path) -> Float[Array, "frame 22 3"]:
     if values.ndim == 2 and values.shape[1] == 3 * NUM_JOINTS:
         values = values.reshape(-1, NUM_JOINTS, 3)
-    if values.ndim == 3 and values.shape[1:] == (24, 3):
-        values = values[:, :NUM_JOINTS]  # SMPL's two hands come last
+    if values.ndim == 3 and values.shape[1] in SMPL_JOINTS and values.shape[2] == 3:
+        values = values[:, :NUM_JOINTS]  # hands and face come last
     if values.ndim != 3 or values.shape[1:] != (NUM_JOINTS, 3):
         raise InputError(
             f"{path} has shape {values.shape}; (frame, 22, 3) joints in SMPL order or (frame, 263) HumanML3D features"

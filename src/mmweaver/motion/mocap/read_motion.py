@@ -1,6 +1,6 @@
 """From a motion file of any known kind to a MotionClip. Start with this file.
 
-BVH, .npy, .npz --bvh, joint_arrays, smpl--> RawMotion (own names, unit, axes)
+BVH, C3D, .npy, .npz --bvh, c3d, joint_arrays, smpl--> RawMotion (own names, unit, axes)
     --joint_names--> 22 joints --cleaning--> no gaps --axes--> metres, z up --cleaning--> MotionClip
 """
 
@@ -15,6 +15,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.array_checks import ArrayChecks
 from mmweaver.motion.mocap.axes import is_reflected, rotate_z_up, unit_of, up_of
 from mmweaver.motion.mocap.bvh import read_bvh
+from mmweaver.motion.mocap.c3d import read_c3d
 from mmweaver.motion.mocap.cleaning import check_bones, cut_t_pose, fill_gaps
 from mmweaver.motion.mocap.clip import MotionClip, RawMotion
 from mmweaver.motion.mocap.joint_arrays import MAX_FRAMES, read_npy, read_npz
@@ -22,7 +23,7 @@ from mmweaver.motion.mocap.joint_names import to_22
 
 FPS_LIMITS = (1.0, 2000.0)
 MAX_UNITS = 1e7  # 10 km in millimetres
-KINDS = ".bvh, .npy (22 joints or HumanML3D features) or .npz (AMASS, SMPL, CMU, joints)"
+KINDS = ".bvh, .c3d, .npy (22 joints, HumanML3D, MDM, Motion-X) or .npz (AMASS, SMPL, CMU, joints)"
 
 
 def read_motion(
@@ -37,7 +38,7 @@ def read_motion(
     """Reads a recorded motion.
 
     Args:
-        path: A .bvh, .npy or .npz file.
+        path: A .bvh, .c3d, .npy or .npz file.
         fps: Frames per second; required if the file states none, and overrides its value.
         unit: m, cm, mm, inch, cmu, or the metres per unit; None estimates it from the body.
         up: Upward axis: y, z, ...; None estimates it from the body.
@@ -62,6 +63,13 @@ def read_motion(
         raw = read_bvh(path)
     elif kind == ".npy":
         raw = read_npy(path)
+    elif kind == ".c3d":
+        raw = read_c3d(path)
+    elif kind in (".pkl", ".pickle", ".pt", ".pth"):
+        raise InputError(
+            f"{path} is a pickle, which could run code and is not opened; load it yourself and save its arrays with"
+            " numpy.savez(file, global_orient=..., body_pose=..., transl=..., fps=...)"
+        )
     elif kind == ".npz":
         raw = read_npz(path, clip, Path(body_model) if body_model is not None else None)
     else:

@@ -21,7 +21,8 @@ from mmweaver.motion.mocap.joint_names import SKELETONS
 Array = np.ndarray
 MEAN_OFFSET_M = np.array(SKELETONS["smpl_offset_m"])
 TRANSLATIONS = ("trans", "transl", "root_translation")
-_POSES = ("poses", "pose", "root_orient", "pose_body")
+_POSES = ("poses", "pose", "root_orient", "pose_body", "global_orient", "body_pose")
+ROOT, BODY = ("root_orient", "global_orient"), ("pose_body", "body_pose")  # of AMASS, and of the smplx package
 RATES = ("mocap_framerate", "mocap_frame_rate", "fps", "frame_rate", "framerate")
 
 
@@ -107,9 +108,12 @@ def forward(
 def _poses(arrays: dict[str, Array], path: Path) -> Float[Array, "frame joint 3"]:
     if any(np.size(arrays[name]) == 0 for name in _POSES if name in arrays):
         raise InputError(f"{path} has no frames: its poses are empty; choose another file")
-    whole = "pose_body" in arrays and "root_orient" in arrays
-    names = ("root_orient", "pose_body") if whole else ("poses",) if "poses" in arrays else ("pose",)
+    found = tuple(next((name for name in names if name in arrays), "") for names in (ROOT, BODY))
+    names = found if all(found) else ("poses",) if "poses" in arrays else ("pose",)
+    if missing := [name for name in names if name not in arrays]:
+        raise InputError(f"{path} holds a part of SMPL poses only; {missing[0]} is missing")
     parts = [real_numbers(path, "poses" if name == "pose" else name, arrays[name]) for name in names]
+    parts = [_rotation_vectors(part) if part.shape[-2:] == (3, 3) and part.ndim == 4 else part for part in parts]
     rows = [part.reshape(len(part), -1) if part.ndim >= 2 else np.zeros((0, 0)) for part in parts]
     poses = np.concatenate(rows, axis=1) if len({len(row) for row in rows}) == 1 else np.zeros((0, 0))
     if poses.shape[1] < 3 * NUM_JOINTS or poses.shape[1] % 3:
@@ -118,6 +122,16 @@ def _poses(arrays: dict[str, Array], path: Path) -> Float[Array, "frame joint 3"
             " needed"
         )
     return poses.reshape(len(poses), -1, 3)
+
+
+def _rotation_vectors(matrices: Float[Array, "frame joint 3 3"]) -> Float[Array, "frame joint 3"]:
+    """Axis-angle of rotation matrices, as WHAM and 4D-Humans give them; nan stays nan."""
+    from scipy.spatial.transform import Rotation
+
+    is_sound = np.isfinite(matrices).all(axis=(2, 3)) & (np.abs(np.linalg.det(matrices) - 1) < 0.1)
+    sound = np.where(is_sound[..., None, None], matrices, np.eye(3))
+    vectors = np.asarray(Rotation.from_matrix(sound.reshape(-1, 3, 3)).as_rotvec()).reshape(*matrices.shape[:2], 3)
+    return np.where(is_sound[..., None], vectors, np.nan)
 
 
 def _own_offsets(body_model: Path, betas: Array) -> Float[Array, "22 3"]:

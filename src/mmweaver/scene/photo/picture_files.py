@@ -116,6 +116,22 @@ def read_depth(path: Path, unit_m: float | None) -> tuple[DepthPixels, Turned]:
         InputError: If it cannot be depth: 8-bit or colour pictures, pictures without measurements, a wrong unit, or
             more than 1 % of values outside 0.01 to 100 m.
     """
+    raw, turned = read_depth_values(path)
+    return depth_in_metres(path, raw, unit_m), turned
+
+
+def read_depth_values(path: Path) -> tuple[np.ndarray, Turned]:
+    """Reads a depth picture as stored.
+
+    Args:
+        path: 16-bit PNG, TIFF, or .npy.
+
+    Returns:
+        Counts or floats, (height, width), and its orientation in the file.
+
+    Raises:
+        InputError: If it cannot be depth: 8-bit or colour pictures, or other sizes.
+    """
     if path.suffix.lower() == ".npy":
         raw = _raw_npy(path)
         turned = Turned(stored_size=(raw.shape[1], raw.shape[0]), orientation=1)
@@ -123,6 +139,23 @@ def read_depth(path: Path, unit_m: float | None) -> tuple[DepthPixels, Turned]:
         raw, turned = _raw_picture(path)
     if raw.size > MAX_PIXELS or min(raw.shape) < _MIN_SIDE:
         raise InputError(f"{path} has {raw.shape[1]} x {raw.shape[0]} pixels; make it {_MIN_SIDE} to 8000 on a side")
+    return raw, turned
+
+
+def depth_in_metres(path: Path, raw: np.ndarray, unit_m: float | None) -> DepthPixels:
+    """Depth of stored values.
+
+    Args:
+        path: The file, for messages.
+        raw: Counts or floats, (height, width).
+        unit_m: Metres per count of integers; None for millimetres. Floats are in metres.
+
+    Returns:
+        Depth in metres, (height, width), nan without a measurement.
+
+    Raises:
+        InputError: If there are no measurements, or more than 1 % of values are outside 0.01 to 100 m.
+    """
     counts = raw.dtype.kind in "ui"
     used_unit_m = (0.001 if unit_m is None else unit_m) if counts else 1.0
     with np.errstate(all="ignore"):  # float64 of a signalling NaN or a longer float
@@ -136,7 +169,7 @@ def read_depth(path: Path, unit_m: float | None) -> tuple[DepthPixels, Turned]:
         possible = measured & (depth >= _POSSIBLE_M[0]) & (depth <= _POSSIBLE_M[1])
     _check_possible(path, depth, measured, possible)
     depth[~possible] = np.nan
-    return depth, turned
+    return depth
 
 
 def _check_possible(path: Path, depth: np.ndarray, measured: np.ndarray, possible: np.ndarray) -> None:

@@ -77,7 +77,7 @@ def falling(act: StepContext) -> None:
 
 @posture("lie")
 def lying(act: StepContext) -> None:
-    """Lying still, with breathing and slight movement of the arms."""
+    """Lying still."""
     _lie_down(act, np.ones_like(act.time_s))
 
 
