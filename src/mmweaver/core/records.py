@@ -369,6 +369,17 @@ LANDMARK_KINDS = (
     "cabinet",
     "couch",
     "chair",
+    "bin",
+    "mirror",
+    "whiteboard",
+    "toilet",
+    "bathtub",
+    "printer",
+    "microwave",
+    "dishwasher",
+    "radiator",
+    "piano",
+    "fireplace",
 )
 
 

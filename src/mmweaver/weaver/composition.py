@@ -118,8 +118,8 @@ def widened(request: ParsedRequest, scene: Scene) -> tuple[ParsedRequest, tuple[
     config = _narrowed(request.config, wide, more)
     (near, far), (old_near, old_far) = _window(config), _window(request.config)
     note = (
-        f"the range window is widened from {old_near:.2f} to {old_far:.2f} m to {near:.2f} to {far:.2f} m, which"
-        f" {request.text!r} needs in this room; --range sets it"
+        f"the range window is widened from {old_near:.2f} to {old_far:.2f} m to {near:.2f} to {far:.2f} m, which the"
+        " sentence needs in this room; --range sets it"
     )
     first = replace(more[0], assumptions=(*more[0].assumptions, note))
     return replace(request, config=config), (first, *more[1:])
