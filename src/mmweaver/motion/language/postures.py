@@ -71,6 +71,13 @@ _WAYS = {
     "seat": " to a seat",
     "back": " back the way it came",
 }
+_STYLES_OF_WALKS = {
+    "tandem": " heel to toe",
+    "cane": " with a cane",
+    "rollator": " with a rollator",
+    "crutches": " on crutches",
+    "pushing": " pushing something",
+}
 _ONTO = {
     "back": "on the back",
     "front": "on the belly",
@@ -113,6 +120,9 @@ def _way(step: Step) -> str:
         return f" on the {step.foot} knee" if step.foot else " on one knee"
     if step.lower == "fall_off":
         return f" to the person's {step.style}"
+    if step.lower == "seated_lean":
+        aside = f" to the person's {step.direction}" if step.direction in _SIDES else " forwards"
+        return " backwards" if step.direction == Way.BACKWARDS else aside
     if step.uses_seat:
         return f" on the {step.seat}" if step.seat and step.lower != "stand_up" else ""
     if step.lower == "lean":
@@ -134,7 +144,9 @@ def _way(step: Step) -> str:
 
 
 def _going(step: Step) -> str:
-    """Destination or direction of a step that changes the position on the floor."""
+    """Manner, destination or direction of a step that changes the position on the floor."""
+    if step.lower == "walk" and step.style in _STYLES_OF_WALKS:
+        return _STYLES_OF_WALKS[step.style] + _going(replace(step, style=""))
     if step.direction == Shape.CIRCLE:
         return f" in a circle{_round(step)}"
     if step.arc_deg:
@@ -179,14 +191,14 @@ _ONE_HANDED = words_in(
     """
     wave raise drink eat phone brush_teeth comb wipe write stir knock open_door point throw reach raise_hold lower_arm
     push_hand pull_hand draw_circle draw_z swipe yawn knock_elbow arm_extension cough vacuum jab cross forehand backhand
-    tennis_serve pick_up put_down hook uppercut
+    tennis_serve pick_up put_down hook uppercut functional_reach seated_reach
     """
 )
 _OF_BOTH = {  # activities that move one hand even if the sentence names both
     **dict.fromkeys(words_in("eat phone brush_teeth comb wipe write stir open_door point throw"), "right"),
     **dict.fromkeys(words_in("swipe draw_circle draw_z yawn cough vacuum drink"), "left"),
 }
-_BOTH = words_in("arms_out hips arm_circles push pull carry")
+_BOTH = words_in("raise_aside raise_ahead arms_out hips arm_circles push pull carry")
 _IN_TURN = words_in("punch jab cross hook uppercut")
 _LIMBS = ("{hand}", "{arm}", "{forearm}")
 _HEIGHTS = {"high": " high up", "up": " upwards", "down": " downwards", "under": " underarm"}
@@ -357,6 +369,9 @@ LYING = {"push_ups": "front", "plank": "front", "sit_ups": "back", "roll_over": 
 _ITS_PLACE = re.compile(r"back[_ ]to[_ ]start|\b(?:position|place|spot|pose|posture|stance)\b")
 _FALLS_ON = {Way.FORWARDS: "front", Way.BACKWARDS: "back"}  # direction of a stumble -> style of the fall
 _WAYS_OF_FALLING = words_in("back backwards backward onback onbelly forward forwards front ahead")
+# Activities of a sitter, and those that a sitter does differently from somebody who stands.
+SEATED = words_in("knee_extension seated_march seated_lean seated_reach cross_legs")
+_SEATED_FORMS = {"march": "seated_march", "lean": "seated_lean", "bend": "seated_lean", "pick_up": "seated_reach"}
 ENTERING = {"sit": "sit_down", "kneel": "kneel_down", "lie": "lie_down", "lie_on_seat": "recline"}
 
 
@@ -382,6 +397,9 @@ def _transitions_to(step: Step, posture: str, before: list[Step]) -> list[Step]:
     """The step as performed from a posture, after the transitions that it needs."""
     if step.lower in ("stand_up", "kneel_up", "get_up"):
         return _rising(step, posture, before)
+    if posture == "seat" and step.lower in _SEATED_FORMS and not (step.upper or step.direction == Shape.SPOT):
+        style = "" if step.style == "held" else step.style
+        return [replace(step, lower=_SEATED_FORMS[step.lower], style=style)]
     if posture in STILL and step.lower == "stand" and not step.on_feet:  # "sits down, stays for two seconds"
         return [replace(step, lower=STILL[posture])]
     if step.posture == "feet":
@@ -420,6 +438,8 @@ def _going_down(step: Step, posture: str, before: list[Step]) -> list[Step]:
     first = _rising_steps(posture, step)
     if step.lower == "crawl":
         return [*first, Step(lower="kneel_down", clause=step.clause), step] if before else [step]
+    if step.lower in SEATED:
+        return [*first, Step(lower="sit_down", seat=step.seat, clause=step.clause), step] if before else [step]
     down = ENTERING.get(step.lower, step.lower)
     during = step.upper if step.lower in _WITH_FREE_HANDS and not _is_done_once(step) else ""
     if not anything_before and step.lower == down and step.upper and step.lower != "fall":

@@ -132,7 +132,7 @@ def _arms_step(step: Step, texts: set[str]) -> Step:
         if texts & LEGS:
             return replace(step, lower="raise_leg", upper="", hand="")
         raise InputError(f"{step.clause!r}: only a hand, an arm or a leg can be raised; say which")
-    if step.upper in ("", "clap") and step.lower not in ("pick_up", "put_down"):
+    if step.upper in ("", "clap") and step.lower not in ("pick_up", "put_down", "functional_reach", "seated_reach"):
         step = replace(step, hand="")
     return step
 
@@ -357,6 +357,7 @@ _BY_LOWER = {
     **dict.fromkeys(("lie", "lie_down", "fall", "get_up"), _floor_step),
     **dict.fromkeys(("kneel", "kneel_up"), _kneeling_step),
     "fall_off": _falling_off_step,
+    **dict.fromkeys(("toe_tap", "leg_aside", "calf_stretch", "knee_extension", "cross_legs"), _leg_step),
     **dict.fromkeys(("kick", "roundhouse", "side_kick", "stomp", "raise_leg", "one_leg", "lunge", "march"), _leg_step),
     "sidestep": _sideways_step,
     "lean": _leaning_step,

@@ -11,7 +11,6 @@ from mmweaver.motion.planning.floor_map import random_sign, unit_vector
 from mmweaver.motion.planning.trajectory import (
     RAMP_S,
     SLOWER_TURNS,
-    SLOWEST_MPS,
     NoTrajectory,
     Trajectory,
     face_along,
@@ -79,7 +78,7 @@ def _walk_bend(trajectory: Trajectory, step: Step, direction_rad: float | None, 
     lasts = step.end_s - begin - sum(ramps) / 2
     either = random_sign(trajectory.rng) if step.either_side else 1.0
     bend = either * np.radians(step.arc_deg) * (-1.0 if backwards else 1.0)
-    speed, slowest = preferred_speed_mps(step, trajectory.rng), SLOWEST_MPS.get(step.lower, 0.5)
+    speed, slowest = preferred_speed_mps(step, trajectory.rng), gait_limit_mps(step)
     for radius in (speed * lasts / abs(bend), *_BEND_RADII_M):
         length = min(radius * abs(bend), speed * lasts)
         if length < slowest * min(lasts, 1.0):
