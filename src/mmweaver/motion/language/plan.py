@@ -17,6 +17,8 @@ STYLED_MPS = {
     "crutches": (0.6, 0.8),
     "pushing": (0.6, 0.8),
 }
+FALLS = ("fall", "collapse", "slip")  # from the feet to the floor
+FALLS_OFF = ("fall_off", "fall_out_of_bed")
 FALLING_ON = "falling_on"  # Step.style of a stumble that ends in a fall
 
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 from itertools import groupby, pairwise
 
 from mmweaver.motion.language.activities import BY_KEY, words_in
-from mmweaver.motion.language.plan import FALLING_ON, NOT_DONE, ClauseRecord, Shape, Step, Way
+from mmweaver.motion.language.plan import FALLING_ON, FALLS, FALLS_OFF, NOT_DONE, ClauseRecord, Shape, Step, Way
 from mmweaver.motion.language.posture_persistence import STAYING
 
 # Done once without a number, though they do not end the step; and repeatedly, within two seconds each.
@@ -83,7 +83,7 @@ _ONTO = {
     "front": "on the belly",
     **{side: f"on the person's {side} side" for side in _SIDES},
 }
-_LYING = words_in("lie lie_down fall")
+_LYING = words_in("lie lie_down fall collapse")
 
 
 def body_phrase(step: Step) -> str:
@@ -118,6 +118,8 @@ def _way(step: Step) -> str:
         return ""
     if step.style == "knee":
         return f" on the {step.foot} knee" if step.foot else " on one knee"
+    if step.lower in ("fall_out_of_bed", "slip"):
+        return ""
     if step.lower == "fall_off":
         return f" to the person's {step.style}"
     if step.lower == "seated_lean":
@@ -365,7 +367,7 @@ RISING = {"seat": ("stand_up",), "knees": ("kneel_up",), "floor": ("get_up",), "
 STILL = {"seat": "sit", "knees": "kneel", "floor": "lie", "couch": "lie_on_seat"}
 _WITH_FREE_HANDS = ("sit_down", "kneel_down")
 # Activities done lying, and on which side; "": on either.
-LYING = {"push_ups": "front", "plank": "front", "sit_ups": "back", "roll_over": ""}
+LYING = {"push_ups": "front", "plank": "front", "sit_ups": "back", "roll_over": "", "try_to_get_up": ""}
 _ITS_PLACE = re.compile(r"back[_ ]to[_ ]start|\b(?:position|place|spot|pose|posture|stance)\b")
 _FALLS_ON = {Way.FORWARDS: "front", Way.BACKWARDS: "back"}  # direction of a stumble -> style of the fall
 _WAYS_OF_FALLING = words_in("back backwards backward onback onbelly forward forwards front ahead")
@@ -403,7 +405,7 @@ def _transitions_to(step: Step, posture: str, before: list[Step]) -> list[Step]:
     if posture in STILL and step.lower == "stand" and not step.on_feet:  # "sits down, stays for two seconds"
         return [replace(step, lower=STILL[posture])]
     if step.posture == "feet":
-        return [*_rising_steps(posture, step), step] if step.lower != "fall" else [step]
+        return [*_rising_steps(posture, step), step] if step.lower not in FALLS else [step]
     return _going_down(step, posture, before)
 
 
@@ -422,7 +424,7 @@ def _going_down(step: Step, posture: str, before: list[Step]) -> list[Step]:
     anything_before = bool(before)
     if step.lower == "roll_over" and posture == "couch":
         step = replace(step, lower="roll_in_bed")
-    if step.lower in ("recline", "lie_on_seat", "roll_in_bed", "fall_off") or (posture, step.posture) == (
+    if step.lower in ("recline", "lie_on_seat", "roll_in_bed", *FALLS_OFF) or (posture, step.posture) == (
         "couch",
         "seat",
     ):
@@ -432,7 +434,7 @@ def _going_down(step: Step, posture: str, before: list[Step]) -> list[Step]:
         down = Step(lower="lie_down", style=LYING[step.lower] or "back", clause=step.clause)
         return [step] if is_there or not before else [*_rising_steps(posture, step), down, step]
     if posture == step.posture:
-        if step.lower in ("sit_down", "kneel_down", "lie_down", "fall"):
+        if step.lower in ("sit_down", "kneel_down", "lie_down", *FALLS):
             step = replace(step, lower=STILL[posture])
         return [step]
     first = _rising_steps(posture, step)
@@ -442,7 +444,7 @@ def _going_down(step: Step, posture: str, before: list[Step]) -> list[Step]:
         return [*first, Step(lower="sit_down", seat=step.seat, clause=step.clause), step] if before else [step]
     down = ENTERING.get(step.lower, step.lower)
     during = step.upper if step.lower in _WITH_FREE_HANDS and not _is_done_once(step) else ""
-    if not anything_before and step.lower == down and step.upper and step.lower != "fall":
+    if not anything_before and step.lower == down and step.upper and step.lower not in FALLS:
         return [replace(step, upper=during, count=0, seconds=0.0), replace(step, lower=STILL[step.posture])]
     if not anything_before:
         return [step]
@@ -460,7 +462,7 @@ def _lies_on(before: list[Step]) -> str:
     for step in reversed(before):
         if LYING.get(step.lower):
             return LYING[step.lower]
-        if step.lower in ("lie_down", "fall") or (step.lower == "lie" and step.style):
+        if step.lower in ("lie_down", *FALLS) or (step.lower == "lie" and step.style):
             return step.style or "back"
     return "back"
 
@@ -475,13 +477,15 @@ def _seat_transitions(step: Step, posture: str, anything_before: bool) -> list[S
     """Lying on furniture and falling off it, both from sitting; sitting up from lying."""
     if posture == "couch" and step.lower in ("recline", "lie_on_seat"):
         return [replace(step, lower="lie_on_seat")]
-    if step.lower == "roll_in_bed" and posture == "couch":
+    if step.lower in ("roll_in_bed", "fall_out_of_bed") and posture == "couch":
         return [step]
+    if step.lower == "fall_out_of_bed" and not anything_before:
+        return [replace(step, lower="lie_on_seat", upper="", count=0, seconds=0.0), step]
     if step.lower in ("lie_on_seat", "roll_in_bed") and not anything_before:
         return [step]
     about = replace(step, upper="", count=0, seconds=0.0)
     entered = [replace(step, lower="recline")] if step.lower == "lie_on_seat" and not step.upper else [step]
-    if step.lower == "roll_in_bed" or (step.lower == "lie_on_seat" and step.upper):
+    if step.lower in ("roll_in_bed", "fall_out_of_bed") or (step.lower == "lie_on_seat" and step.upper):
         entered = [replace(about, lower="recline"), step]
     if posture == "couch":
         up = replace(about, lower="sit_up")
@@ -523,11 +527,11 @@ def _styled(steps: list[Step]) -> list[Step]:
     for k, step in enumerate(steps):
         if step.lower in LYING:
             style = LYING[step.lower] or style or "back"
-        if step.lower in ("lie_down", "fall", "fall_off") or (step.lower in ("lie", "get_up") and not style):
+        if step.lower in ("lie_down", *FALLS, *FALLS_OFF) or (step.lower in ("lie", "get_up") and not style):
             style = step.style or "back"
         if step.posture == "knees":
             foot, knee = step.foot or foot, step.style or knee
-        if step.lower in ("lie", "get_up", "lie_down", "fall", "fall_off", *LYING):
+        if step.lower in ("lie", "get_up", "lie_down", *FALLS, *FALLS_OFF, *LYING):
             steps[k] = replace(step, style=style)
         if step.lower in ("kneel", "kneel_up"):
             steps[k] = replace(step, foot=foot, style=knee)
@@ -577,7 +581,7 @@ def merged(steps: list[Step]) -> list[Step]:
         same = {
             "sit": ("sit", "sit_down"),
             "kneel": ("kneel", "kneel_down"),
-            "lie": ("lie", "lie_down", "fall", "fall_off"),
+            "lie": ("lie", "lie_down", *FALLS, *FALLS_OFF),
             "lie_on_seat": ("lie_on_seat", "recline"),
         }.get(step.lower, (step.lower,))
         if not (plain and result and result[-1].lower in same and not result[-1].upper):

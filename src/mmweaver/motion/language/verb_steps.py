@@ -293,7 +293,9 @@ def _floor_step(step: Step, words: list[Word], at: int) -> Step:
 
 
 def _falling_off_step(step: Step, words: list[Word], at: int) -> Step:
-    """To the named own side, else to the right."""
+    """To the named own side, else to the right; out of a bed along which one lies, onto the left one."""
+    if step.seat == "bed":
+        return step.straight(lower="fall_out_of_bed", style="left", count=0)
     style = step.direction if isinstance(step.direction, Side) else "right"
     return step.straight(style=style, count=0)
 
@@ -349,7 +351,20 @@ def facing_of(words: list[Word]) -> str:
     return ""
 
 
+def _slip_step(step: Step, words: list[Word], at: int) -> Step:
+    return step.straight(style="back", count=0)
+
+
+def _collapse_step(step: Step, words: list[Word], at: int) -> Step:
+    """Onto the named own side, else the right one; on the back or the belly if that is said."""
+    side = step.direction if isinstance(step.direction, Side) else "right"
+    style = {Way.FORWARDS: "front", Way.BACKWARDS: "back", Way.BACK: "back"}.get(step.direction, step.style or side)
+    return step.straight(style=style, count=0)
+
+
 _BY_LOWER = {
+    "slip": _slip_step,
+    "collapse": _collapse_step,
     **dict.fromkeys(GAITS, _going_step),
     "turn": _turning_step,
     **dict.fromkeys(("jump", "hop"), _jumping_step),
