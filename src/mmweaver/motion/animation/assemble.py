@@ -143,9 +143,10 @@ def _merge_gait(steps: tuple[PlacedStep, ...]) -> tuple[PlacedStep, ...]:
     """Merges consecutive walking and turning into one gait: blending two step rhythms would make the feet jump."""
     merged: list[PlacedStep] = []
     for placed in steps:
-        if merged and _is_plain_gait(placed.step) and _is_plain_gait(merged[-1].step):
+        if merged and _is_one_gait(merged[-1].step, placed.step):
             before = merged[-1]
-            whole = replace(before.step, lower="walk", end_s=placed.step.end_s)
+            style = before.step.style or placed.step.style
+            whole = replace(before.step, lower="walk", style=style, end_s=placed.step.end_s)
             merged[-1] = replace(before, step=whole, moves=(*before.moves, *placed.moves))
         else:
             merged.append(placed)
@@ -156,6 +157,12 @@ def _may_be_uneven(placed: PlacedStep) -> bool:
     """Whether the tempo of a step may drift: on the spot, feet on the floor, and a continuous activity."""
     activity = BY_KEY[placed.step.lower]
     return not (placed.moves or activity.once or activity.posture == "floor" or placed.step.lower in _IN_THE_AIR)
+
+
+def _is_one_gait(one: Step, other: Step) -> bool:
+    """Whether two steps are a walk of one style and its turns."""
+    is_turn = "turn" in (one.lower, other.lower)
+    return _is_plain_gait(one) and _is_plain_gait(other) and (is_turn or one.style == other.style)
 
 
 def _is_plain_gait(step: Step) -> bool:

@@ -17,6 +17,7 @@ _LEGGED = frozenset({"walk", "run", "jog", "jump", "hop", "leap", "step", "go", 
 _OF_A_LEG = frozenset({"ankle", "thigh", "calf", "shin", "heel", "toe", "toes"})
 _OF_THE_BODY = frozenset({"shoulder", "elbow", "ear", "eye", "cheek", "hip", "buttock", "breast", "collar"})
 _THAT_ONE = ("first", "second", "this", "that", "the", "other", "each", "every", "no", "which")
+GAIT = "gait_"  # begins a token for the style of a walk: gait_cane
 _TOKENS = ("onback", "onbelly", "lookdown", "highkick", "frontlunge")
 
 
@@ -172,7 +173,8 @@ def _token(about: Step, text: str, texts: set[str]) -> Step:
         "swipe_up": "up",
         "swipe_down": "down",
     }
-    return replace(about, style=styles.get(text, about.style))
+    style = text.removeprefix(GAIT) if text.startswith(GAIT) else about.style
+    return replace(about, style=styles.get(text, style))
 
 
 _PUSHED_FROM: dict[str, Direction] = {

@@ -9,6 +9,16 @@ from mmweaver.motion.language.described_person import DescribedPerson
 from mmweaver.motion.language.places import Place
 
 HOPPING = ("hop", "hop_one_leg")  # on the spot unless a direction is named
+# Usual speeds in m/s of walks by `Step.style`; with an aid those of elderly people.
+STYLED_MPS = {
+    "tandem": (0.28, 0.36),
+    "cane": (0.55, 0.75),
+    "rollator": (0.6, 0.8),
+    "crutches": (0.6, 0.8),
+    "pushing": (0.6, 0.8),
+}
+FALLS = ("fall", "collapse", "slip")  # from the feet to the floor
+FALLS_OFF = ("fall_off", "fall_out_of_bed")
 FALLING_ON = "falling_on"  # Step.style of a stumble that ends in a fall
 
 

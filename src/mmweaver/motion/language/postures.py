@@ -11,7 +11,7 @@ from dataclasses import replace
 from itertools import groupby, pairwise
 
 from mmweaver.motion.language.activities import BY_KEY, words_in
-from mmweaver.motion.language.plan import FALLING_ON, NOT_DONE, ClauseRecord, Shape, Step, Way
+from mmweaver.motion.language.plan import FALLING_ON, FALLS, FALLS_OFF, NOT_DONE, ClauseRecord, Shape, Step, Way
 from mmweaver.motion.language.posture_persistence import STAYING
 
 # Done once without a number, though they do not end the step; and repeatedly, within two seconds each.
@@ -71,12 +71,19 @@ _WAYS = {
     "seat": " to a seat",
     "back": " back the way it came",
 }
+_STYLES_OF_WALKS = {
+    "tandem": " heel to toe",
+    "cane": " with a cane",
+    "rollator": " with a rollator",
+    "crutches": " on crutches",
+    "pushing": " pushing something",
+}
 _ONTO = {
     "back": "on the back",
     "front": "on the belly",
     **{side: f"on the person's {side} side" for side in _SIDES},
 }
-_LYING = words_in("lie lie_down fall")
+_LYING = words_in("lie lie_down fall collapse")
 
 
 def body_phrase(step: Step) -> str:
@@ -111,8 +118,13 @@ def _way(step: Step) -> str:
         return ""
     if step.style == "knee":
         return f" on the {step.foot} knee" if step.foot else " on one knee"
+    if step.lower in ("fall_out_of_bed", "slip"):
+        return ""
     if step.lower == "fall_off":
         return f" to the person's {step.style}"
+    if step.lower == "seated_lean":
+        aside = f" to the person's {step.direction}" if step.direction in _SIDES else " forwards"
+        return " backwards" if step.direction == Way.BACKWARDS else aside
     if step.uses_seat:
         return f" on the {step.seat}" if step.seat and step.lower != "stand_up" else ""
     if step.lower == "lean":
@@ -134,7 +146,9 @@ def _way(step: Step) -> str:
 
 
 def _going(step: Step) -> str:
-    """Destination or direction of a step that changes the position on the floor."""
+    """Manner, destination or direction of a step that changes the position on the floor."""
+    if step.lower == "walk" and step.style in _STYLES_OF_WALKS:
+        return _STYLES_OF_WALKS[step.style] + _going(replace(step, style=""))
     if step.direction == Shape.CIRCLE:
         return f" in a circle{_round(step)}"
     if step.arc_deg:
@@ -179,14 +193,14 @@ _ONE_HANDED = words_in(
     """
     wave raise drink eat phone brush_teeth comb wipe write stir knock open_door point throw reach raise_hold lower_arm
     push_hand pull_hand draw_circle draw_z swipe yawn knock_elbow arm_extension cough vacuum jab cross forehand backhand
-    tennis_serve pick_up put_down hook uppercut
+    tennis_serve pick_up put_down hook uppercut functional_reach seated_reach
     """
 )
 _OF_BOTH = {  # activities that move one hand even if the sentence names both
     **dict.fromkeys(words_in("eat phone brush_teeth comb wipe write stir open_door point throw"), "right"),
     **dict.fromkeys(words_in("swipe draw_circle draw_z yawn cough vacuum drink"), "left"),
 }
-_BOTH = words_in("arms_out hips arm_circles push pull carry")
+_BOTH = words_in("raise_aside raise_ahead arms_out hips arm_circles push pull carry")
 _IN_TURN = words_in("punch jab cross hook uppercut")
 _LIMBS = ("{hand}", "{arm}", "{forearm}")
 _HEIGHTS = {"high": " high up", "up": " upwards", "down": " downwards", "under": " underarm"}
@@ -353,10 +367,13 @@ RISING = {"seat": ("stand_up",), "knees": ("kneel_up",), "floor": ("get_up",), "
 STILL = {"seat": "sit", "knees": "kneel", "floor": "lie", "couch": "lie_on_seat"}
 _WITH_FREE_HANDS = ("sit_down", "kneel_down")
 # Activities done lying, and on which side; "": on either.
-LYING = {"push_ups": "front", "plank": "front", "sit_ups": "back", "roll_over": ""}
+LYING = {"push_ups": "front", "plank": "front", "sit_ups": "back", "roll_over": "", "try_to_get_up": ""}
 _ITS_PLACE = re.compile(r"back[_ ]to[_ ]start|\b(?:position|place|spot|pose|posture|stance)\b")
 _FALLS_ON = {Way.FORWARDS: "front", Way.BACKWARDS: "back"}  # direction of a stumble -> style of the fall
 _WAYS_OF_FALLING = words_in("back backwards backward onback onbelly forward forwards front ahead")
+# Activities of a sitter, and those that a sitter does differently from somebody who stands.
+SEATED = words_in("knee_extension seated_march seated_lean seated_reach cross_legs")
+_SEATED_FORMS = {"march": "seated_march", "lean": "seated_lean", "bend": "seated_lean", "pick_up": "seated_reach"}
 ENTERING = {"sit": "sit_down", "kneel": "kneel_down", "lie": "lie_down", "lie_on_seat": "recline"}
 
 
@@ -382,10 +399,13 @@ def _transitions_to(step: Step, posture: str, before: list[Step]) -> list[Step]:
     """The step as performed from a posture, after the transitions that it needs."""
     if step.lower in ("stand_up", "kneel_up", "get_up"):
         return _rising(step, posture, before)
+    if posture == "seat" and step.lower in _SEATED_FORMS and not (step.upper or step.direction == Shape.SPOT):
+        style = "" if step.style == "held" else step.style
+        return [replace(step, lower=_SEATED_FORMS[step.lower], style=style)]
     if posture in STILL and step.lower == "stand" and not step.on_feet:  # "sits down, stays for two seconds"
         return [replace(step, lower=STILL[posture])]
     if step.posture == "feet":
-        return [*_rising_steps(posture, step), step] if step.lower != "fall" else [step]
+        return [*_rising_steps(posture, step), step] if step.lower not in FALLS else [step]
     return _going_down(step, posture, before)
 
 
@@ -404,7 +424,7 @@ def _going_down(step: Step, posture: str, before: list[Step]) -> list[Step]:
     anything_before = bool(before)
     if step.lower == "roll_over" and posture == "couch":
         step = replace(step, lower="roll_in_bed")
-    if step.lower in ("recline", "lie_on_seat", "roll_in_bed", "fall_off") or (posture, step.posture) == (
+    if step.lower in ("recline", "lie_on_seat", "roll_in_bed", *FALLS_OFF) or (posture, step.posture) == (
         "couch",
         "seat",
     ):
@@ -414,15 +434,17 @@ def _going_down(step: Step, posture: str, before: list[Step]) -> list[Step]:
         down = Step(lower="lie_down", style=LYING[step.lower] or "back", clause=step.clause)
         return [step] if is_there or not before else [*_rising_steps(posture, step), down, step]
     if posture == step.posture:
-        if step.lower in ("sit_down", "kneel_down", "lie_down", "fall"):
+        if step.lower in ("sit_down", "kneel_down", "lie_down", *FALLS):
             step = replace(step, lower=STILL[posture])
         return [step]
     first = _rising_steps(posture, step)
     if step.lower == "crawl":
         return [*first, Step(lower="kneel_down", clause=step.clause), step] if before else [step]
+    if step.lower in SEATED:
+        return [*first, Step(lower="sit_down", seat=step.seat, clause=step.clause), step] if before else [step]
     down = ENTERING.get(step.lower, step.lower)
     during = step.upper if step.lower in _WITH_FREE_HANDS and not _is_done_once(step) else ""
-    if not anything_before and step.lower == down and step.upper and step.lower != "fall":
+    if not anything_before and step.lower == down and step.upper and step.lower not in FALLS:
         return [replace(step, upper=during, count=0, seconds=0.0), replace(step, lower=STILL[step.posture])]
     if not anything_before:
         return [step]
@@ -440,7 +462,7 @@ def _lies_on(before: list[Step]) -> str:
     for step in reversed(before):
         if LYING.get(step.lower):
             return LYING[step.lower]
-        if step.lower in ("lie_down", "fall") or (step.lower == "lie" and step.style):
+        if step.lower in ("lie_down", *FALLS) or (step.lower == "lie" and step.style):
             return step.style or "back"
     return "back"
 
@@ -455,13 +477,15 @@ def _seat_transitions(step: Step, posture: str, anything_before: bool) -> list[S
     """Lying on furniture and falling off it, both from sitting; sitting up from lying."""
     if posture == "couch" and step.lower in ("recline", "lie_on_seat"):
         return [replace(step, lower="lie_on_seat")]
-    if step.lower == "roll_in_bed" and posture == "couch":
+    if step.lower in ("roll_in_bed", "fall_out_of_bed") and posture == "couch":
         return [step]
+    if step.lower == "fall_out_of_bed" and not anything_before:
+        return [replace(step, lower="lie_on_seat", upper="", count=0, seconds=0.0), step]
     if step.lower in ("lie_on_seat", "roll_in_bed") and not anything_before:
         return [step]
     about = replace(step, upper="", count=0, seconds=0.0)
     entered = [replace(step, lower="recline")] if step.lower == "lie_on_seat" and not step.upper else [step]
-    if step.lower == "roll_in_bed" or (step.lower == "lie_on_seat" and step.upper):
+    if step.lower in ("roll_in_bed", "fall_out_of_bed") or (step.lower == "lie_on_seat" and step.upper):
         entered = [replace(about, lower="recline"), step]
     if posture == "couch":
         up = replace(about, lower="sit_up")
@@ -503,11 +527,11 @@ def _styled(steps: list[Step]) -> list[Step]:
     for k, step in enumerate(steps):
         if step.lower in LYING:
             style = LYING[step.lower] or style or "back"
-        if step.lower in ("lie_down", "fall", "fall_off") or (step.lower in ("lie", "get_up") and not style):
+        if step.lower in ("lie_down", *FALLS, *FALLS_OFF) or (step.lower in ("lie", "get_up") and not style):
             style = step.style or "back"
         if step.posture == "knees":
             foot, knee = step.foot or foot, step.style or knee
-        if step.lower in ("lie", "get_up", "lie_down", "fall", "fall_off", *LYING):
+        if step.lower in ("lie", "get_up", "lie_down", *FALLS, *FALLS_OFF, *LYING):
             steps[k] = replace(step, style=style)
         if step.lower in ("kneel", "kneel_up"):
             steps[k] = replace(step, foot=foot, style=knee)
@@ -557,7 +581,7 @@ def merged(steps: list[Step]) -> list[Step]:
         same = {
             "sit": ("sit", "sit_down"),
             "kneel": ("kneel", "kneel_down"),
-            "lie": ("lie", "lie_down", "fall", "fall_off"),
+            "lie": ("lie", "lie_down", *FALLS, *FALLS_OFF),
             "lie_on_seat": ("lie_on_seat", "recline"),
         }.get(step.lower, (step.lower,))
         if not (plain and result and result[-1].lower in same and not result[-1].upper):

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY
-from mmweaver.motion.language.plan import APPROXIMATED, FALLING_ON, NOT_DONE, MotionPlan, Shape, Step
+from mmweaver.motion.language.plan import APPROXIMATED, FALLING_ON, NOT_DONE, STYLED_MPS, MotionPlan, Shape, Step
 from mmweaver.motion.language.postures import PACES, add_shown_text
 from mmweaver.motion.language.sentence import parse_sentence
 
@@ -245,7 +245,7 @@ def _usual_limits(step: Step) -> tuple[float, float]:
         return BY_KEY[step.lower].least_s, CRAWLING_TO_AND_FRO_S if step.lower == "crawl" else PACING_S
     if step.distance_m and step.moves:
         usual_mps = {"jog": 2.6, "walk": 1.1}.get(step.lower, 0.7) * (0.65, 1.0, 1.3)[step.speed + 1]
-        usual_mps = step.speed_mps or usual_mps
+        usual_mps = step.speed_mps or STYLED_MPS.get(step.style, (usual_mps,))[0]
         way_m = step.distance_m + TURN_M * max(len(step.route_m) - 1, 0)
         return way_m / (1.4 * usual_mps) + 0.3, way_m / usual_mps + 0.6
     if step.several and not step.count:  # "does squats"

@@ -132,7 +132,7 @@ def _arms_step(step: Step, texts: set[str]) -> Step:
         if texts & LEGS:
             return replace(step, lower="raise_leg", upper="", hand="")
         raise InputError(f"{step.clause!r}: only a hand, an arm or a leg can be raised; say which")
-    if step.upper in ("", "clap") and step.lower not in ("pick_up", "put_down"):
+    if step.upper in ("", "clap") and step.lower not in ("pick_up", "put_down", "functional_reach", "seated_reach"):
         step = replace(step, hand="")
     return step
 
@@ -293,7 +293,9 @@ def _floor_step(step: Step, words: list[Word], at: int) -> Step:
 
 
 def _falling_off_step(step: Step, words: list[Word], at: int) -> Step:
-    """To the named own side, else to the right."""
+    """To the named own side, else to the right; out of a bed along which one lies, onto the left one."""
+    if step.seat == "bed":
+        return step.straight(lower="fall_out_of_bed", style="left", count=0)
     style = step.direction if isinstance(step.direction, Side) else "right"
     return step.straight(style=style, count=0)
 
@@ -349,7 +351,20 @@ def facing_of(words: list[Word]) -> str:
     return ""
 
 
+def _slip_step(step: Step, words: list[Word], at: int) -> Step:
+    return step.straight(style="back", count=0)
+
+
+def _collapse_step(step: Step, words: list[Word], at: int) -> Step:
+    """Onto the named own side, else the right one; on the back or the belly if that is said."""
+    side = step.direction if isinstance(step.direction, Side) else "right"
+    style = {Way.FORWARDS: "front", Way.BACKWARDS: "back", Way.BACK: "back"}.get(step.direction, step.style or side)
+    return step.straight(style=style, count=0)
+
+
 _BY_LOWER = {
+    "slip": _slip_step,
+    "collapse": _collapse_step,
     **dict.fromkeys(GAITS, _going_step),
     "turn": _turning_step,
     **dict.fromkeys(("jump", "hop"), _jumping_step),
@@ -357,6 +372,7 @@ _BY_LOWER = {
     **dict.fromkeys(("lie", "lie_down", "fall", "get_up"), _floor_step),
     **dict.fromkeys(("kneel", "kneel_up"), _kneeling_step),
     "fall_off": _falling_off_step,
+    **dict.fromkeys(("toe_tap", "leg_aside", "calf_stretch", "knee_extension", "cross_legs"), _leg_step),
     **dict.fromkeys(("kick", "roundhouse", "side_kick", "stomp", "raise_leg", "one_leg", "lunge", "march"), _leg_step),
     "sidestep": _sideways_step,
     "lean": _leaning_step,

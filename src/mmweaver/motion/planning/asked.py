@@ -16,7 +16,7 @@ from mmweaver.motion.language.plan import HOPPING, Shape, Side, Step, Way
 from mmweaver.motion.planning.targets import SEATS, faced_landmarks, goes_to_target, kinds_of
 
 LENGTH, SPEED, ANGLE_DEG, DURATION = (0.10, 0.10), (0.15, 0.0), 10.0, (0.10, 0.15)  # share, and at least
-LEAST_M = {"jog": 1.2, "crawl": 0.4, "walking_lunge": 0.5, "hop": 0.3, "hop_one_leg": 0.3, "leap": 0.2}
+LEAST_M = {"tandem": 0.35, "jog": 1.2, "crawl": 0.4, "walking_lunge": 0.5, "hop": 0.3, "hop_one_leg": 0.3, "leap": 0.2}
 WALK_M, SIDESTEP_M = 0.7, 0.18  # shortest path that is a walk, and of one sidestep
 SLOW_MPS, FAST_MPS = 1.05, 1.15  # a slow walk is slower, a quick one faster than
 FALL_TOLERANCE_DEG = 45.0
@@ -27,7 +27,7 @@ FACES_TABLE_DEG = 60.0  # of a sitter at a table
 UNCOUNTED = words_in(
     "march knock nod shake_head cough count_fingers sit_down stand_up kneel_up get_up kneel_down lie_down"
 )
-LEGS_UP = ("kick", "roundhouse", "side_kick", "stomp", "raise_leg", "one_leg")
+LEGS_UP = ("leg_aside", "knee_extension", "kick", "roundhouse", "side_kick", "stomp", "raise_leg", "one_leg")
 POSTURE_OF = {"seat": ("seat",), "couch": ("floor", "seat"), "knees": ("knees", "floor"), "floor": ("floor",)}
 HELD_BY_HABIT = ("carry", "phone", "cradle", "tennis_serve")  # both hands, or either, may be used
 
@@ -173,7 +173,7 @@ def _way(step: Step) -> Iterator[Quantity]:
     if step.lower in HOPPING or step.lower == "sidestep" or step.lower == "leap":
         least = LEAST_M.get(step.lower, SIDESTEP_M)
     else:
-        least = LEAST_M.get(step.lower, WALK_M)
+        least = LEAST_M.get(step.style, LEAST_M.get(step.lower, WALK_M))
     if goes_to_target(step) or step.direction == Way.SEAT:
         least = 0.3
     yield Quantity(what=what, asked=least, shown=length, is_least=True, tolerance=0.05)

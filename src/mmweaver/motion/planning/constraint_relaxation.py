@@ -16,7 +16,7 @@ from mmweaver.core.boards import PRESETS
 from mmweaver.core.errors import InputError, NoRoomError
 from mmweaver.core.records import Scene
 from mmweaver.motion.language.places import Place
-from mmweaver.motion.language.plan import FALLING_ON, MotionPlan, Shape, Step, Way
+from mmweaver.motion.language.plan import FALLING_ON, FALLS, MotionPlan, Shape, Step, Way
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.named_places import cells_of
 from mmweaver.motion.planning.targets import SEATS
@@ -35,7 +35,14 @@ _ON_THE_SPOT = {
     "walking_lunge": ("lunge", "lunges"),
 }
 _FALL_STYLES = {"back": "backwards", "left": "to the left", "right": "to the right", "front": "forwards"}
-_FALLEN = ("fall", "lie", "roll_over", "get_up")  # steps of a fall, which share their direction
+_FALLEN = (
+    "fall",
+    "collapse",
+    "try_to_get_up",
+    "lie",
+    "roll_over",
+    "get_up",
+)  # steps of a fall, which share their direction
 _SAYS_AHEAD = frozenset({"forward", "forwards", "ahead", "straight", "advances", "advancing"})
 DEEP_M = 0.03  # penetration on a tight floor beyond which other fallbacks are tried first
 _ANY_NEAR_M, _ANY_FAR_M = 0.2, 30.0
@@ -211,8 +218,8 @@ def falling(plan: MotionPlan, style: str) -> tuple[MotionPlan, tuple[str, ...]]:
     for number, step in enumerate(plan.steps):
         if step.style == FALLING_ON and number + 1 < len(plan.steps) and plan.steps[number + 1].style != style:
             step = replace(step, style="")  # a stumble goes on into a fall of its own direction only
-        falls_otherwise = step.lower == "fall" and step.style != style
-        fallen = falls_otherwise or (fallen and step.lower in _FALLEN and step.lower != "fall")
+        falls_otherwise = step.lower in ("fall", "collapse") and step.style != style
+        fallen = falls_otherwise or (fallen and step.lower in _FALLEN and step.lower not in FALLS)
         steps.append(replace(step, style=style) if fallen else step)
         if falls_otherwise:
             notes.append(

@@ -6,12 +6,11 @@ from mmweaver.motion.animation.library.on_furniture import OFF_SEAT_AHEAD_M
 from mmweaver.motion.animation.library.on_the_floor import BACK_BEHIND_M, BELLY_AHEAD_M, SIDE_AWAY_M
 from mmweaver.motion.animation.root_path import Move, Turn
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
-from mmweaver.motion.language.plan import Shape, Side, Step, Way
+from mmweaver.motion.language.plan import FALLS_OFF, Shape, Side, Step, Way
 from mmweaver.motion.planning.floor_map import random_sign, unit_vector
 from mmweaver.motion.planning.trajectory import (
     RAMP_S,
     SLOWER_TURNS,
-    SLOWEST_MPS,
     NoTrajectory,
     Trajectory,
     face_along,
@@ -79,7 +78,7 @@ def _walk_bend(trajectory: Trajectory, step: Step, direction_rad: float | None, 
     lasts = step.end_s - begin - sum(ramps) / 2
     either = random_sign(trajectory.rng) if step.either_side else 1.0
     bend = either * np.radians(step.arc_deg) * (-1.0 if backwards else 1.0)
-    speed, slowest = preferred_speed_mps(step, trajectory.rng), SLOWEST_MPS.get(step.lower, 0.5)
+    speed, slowest = preferred_speed_mps(step, trajectory.rng), gait_limit_mps(step)
     for radius in (speed * lasts / abs(bend), *_BEND_RADII_M):
         length = min(radius * abs(bend), speed * lasts)
         if length < slowest * min(lasts, 1.0):
@@ -201,7 +200,7 @@ def check_floor_space(trajectory: Trajectory, step: Step, body: SkeletonProporti
         heading_rad += 0.5 * np.pi * (1 if step.style == "left" else -1)
         low, high = -0.1 * h, (SIDE_AWAY_M + 0.55) * h
     along = np.linspace(low, high, 24)[:, None] * unit_vector(heading_rad)
-    ahead_m = OFF_SEAT_AHEAD_M if step.lower == "fall_off" else 0.0
+    ahead_m = OFF_SEAT_AHEAD_M if step.lower in FALLS_OFF else 0.0
     ahead = unit_vector(trajectory.heading_rad)
     places = trajectory.position_m + ahead_m * ahead + along
     short_m = np.maximum(LYING_ROOM_M - trajectory.floor.clearance_at(places), 0.0)

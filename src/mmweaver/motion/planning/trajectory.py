@@ -7,7 +7,7 @@ from jaxtyping import Float
 
 from mmweaver.motion.animation.library.gait import LUNGES_HZ
 from mmweaver.motion.animation.root_path import Move, RootPath, Turn
-from mmweaver.motion.language.plan import HOPPING, Shape, Step, Way
+from mmweaver.motion.language.plan import HOPPING, STYLED_MPS, Shape, Step, Way
 from mmweaver.motion.planning.collision import PulledChair
 from mmweaver.motion.planning.floor_map import FloorMap, random_sign, unit_vector
 
@@ -48,6 +48,13 @@ def signed_angle_rad(one: float, other: float) -> float:
     return float((other - one + np.pi) % (2 * np.pi) - np.pi)
 
 
+def gait_limit_mps(step: Step) -> float:
+    """The lowest speed of a step's gait, in m/s."""
+    if step.lower == "walk" and step.style in STYLED_MPS:
+        return 0.7 * STYLED_MPS[step.style][0]
+    return SLOWEST_MPS.get(step.lower, 0.5)
+
+
 def preferred_speed_mps(step: Step, rng: np.random.Generator) -> float:
     """Samples a speed for a step's gait and for 'slowly' or 'quickly'.
 
@@ -66,6 +73,8 @@ def preferred_speed_mps(step: Step, rng: np.random.Generator) -> float:
         low, high = ((1.8, 2.1), (2.1, 2.7), (2.7, 3.2))[step.speed + 1]
     elif step.lower == "jog":
         low, high = ((2.1, 2.6), (2.7, 3.3), (3.5, 4.2))[step.speed + 1]
+    elif step.lower == "walk" and step.style in STYLED_MPS:
+        low, high = (mps * (1.0 + 0.2 * step.speed) for mps in STYLED_MPS[step.style])
     elif step.lower == "crawl":
         low, high = ((0.2, 0.25), (0.28, 0.45), (0.5, 0.7))[step.speed + 1]
     elif step.lower == "walking_lunge":
@@ -96,7 +105,7 @@ def slowest_mps(step: Step, speed_mps: float) -> float:
     """
     if step.speed_mps or step.steps_hz:
         return 0.95 * speed_mps
-    return max(SLOWEST_MPS[step.lower], (RUN_SLOWED_TO if step.lower == "jog" else SLOWED_TO) * speed_mps)
+    return max(gait_limit_mps(step), (RUN_SLOWED_TO if step.lower == "jog" else SLOWED_TO) * speed_mps)
 
 
 @dataclass
@@ -287,10 +296,10 @@ def walk_straight(trajectory: Trajectory, step: Step, direction_rad: float, *, f
         trajectory.cost += 2.0 * (1 - free / wanted)
         trajectory.go(step, direction_rad, free, (begin, end), ramps)
         return
-    if free < SHORTEST_WALK_M * SLOWEST_MPS[step.lower] / SLOWEST_MPS["walk"]:
+    if free < SHORTEST_WALK_M * gait_limit_mps(step) / SLOWEST_MPS["walk"]:
         raise NoTrajectory(f"only {free:.1f} m")
     stop_ramps = (ramps[0], _ramp_s(step))
-    speed = speed if step.speed_mps or step.steps_hz else max(0.85 * speed, SLOWEST_MPS[step.lower])
+    speed = speed if step.speed_mps or step.steps_hz else max(0.85 * speed, gait_limit_mps(step))
     lasts = free / speed + sum(stop_ramps) / 2
     trajectory.cost += 1.5 + 2.0 * (1 - free / wanted)
     trajectory.go(step, direction_rad, free, (begin, begin + lasts), stop_ramps)
@@ -379,7 +388,7 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
         NoTrajectory: If there is too little room or time.
     """
     speed = preferred_speed_mps(step, trajectory.rng)
-    runs, slowest = step.lower == "jog", SLOWEST_MPS[step.lower]
+    runs, slowest = step.lower == "jog", gait_limit_mps(step)
     time, begun, ramp_s = step.start_s, first, _ramp_s(step)
     trajectory.turn_rate_radps = CRAWLING_TURN_RADPS if step.lower == "crawl" else TURN_RATE_RADPS
     pacing_m = _pacing_m(step, speed)

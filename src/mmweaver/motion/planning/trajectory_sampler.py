@@ -10,7 +10,7 @@ from jaxtyping import Float
 from mmweaver.core.records import Scene
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.activities import CLEARANCE_M
-from mmweaver.motion.language.plan import MotionPlan, Shape, Side, Step, Way
+from mmweaver.motion.language.plan import FALLS, FALLS_OFF, MotionPlan, Shape, Side, Step, Way
 from mmweaver.motion.planning.approaches import (
     CLOSEST_FEET_M,
     Approach,
@@ -74,7 +74,7 @@ from mmweaver.motion.planning.trajectory import (
 
 Array = np.ndarray
 FAVOURITE_COST_PER_M, LOST_COST = 0.7, 12.0
-FALLING_ON_FLOOR = ("fall", "lie_down", "lie", "crawl")
+FALLING_ON_FLOOR = (*FALLS, "lie_down", "lie", "crawl")
 _SAME_PLACE_M = 0.1
 _SAME_SEAT_M = 0.6  # places to sit within this distance belong to one seat
 _KNOWN_WAYS = 0.5  # share of the tries that use known ways to sit, if the usual ones collide
@@ -388,7 +388,7 @@ class CandidateSampler:
         """Starts on a seat of the scene, near the requested start; else on a stool, roughly facing the radar."""
         cost, notes = 0.0, []
         near = [seat for seat in seats if self._is_meant(seat, named=bool(self.plan.steps[0].seat))]
-        falls_off = any(step.lower == "fall_off" for step in self.plan.steps)
+        falls_off = any(step.lower in FALLS_OFF for step in self.plan.steps)
         at_table = self._stool_at_thing()
         if at_table is not None and (not near or self.rng.random() < _AT_TABLE):
             notes.append(stool_note(at_table, none_at_all=not self.floor.scene.seats))

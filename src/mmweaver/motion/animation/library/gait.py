@@ -61,6 +61,7 @@ class Style:
     uneven: float = 0.0  # share of a step by which the right foot strikes late (negative: early): a limp
     lopsided: float = 0.0  # relative height of the left foot's swing above the right one's
     weave_m: float = 0.0  # lateral sway of the whole body
+    stepping_mps: float = 0.6  # speed above which the feet are placed as in walking, not as in standing
 
 
 def walking_style(act: StepContext, speed_mps: float) -> Style:
@@ -136,10 +137,16 @@ def standing(act: StepContext) -> None:
     act.add(act.wander(0.05, 0.25), head_yaw=0.1)
 
 
+STYLED_WALKS: dict[str, Callable[[StepContext], None]] = {}  # by `Step.style`, see `walking_aids`
+
+
 @posture("walk", stands=False)
 def walking(act: StepContext) -> None:
-    """Walks at the speed of the path."""
-    steps_along_path(act, walking_style(act, max(cruise_mps(act), 0.7)))
+    """Walks at the speed of the path, as the style of the step asks."""
+    if act.style in STYLED_WALKS:
+        STYLED_WALKS[act.style](act)
+    else:
+        steps_along_path(act, walking_style(act, max(cruise_mps(act), 0.7)))
 
 
 @posture("jog", stands=False)
@@ -236,7 +243,7 @@ def _footholds(
 ) -> tuple[Float[np.ndarray, "k 2"], Float[np.ndarray, " k"]]:
     """Positions (k, 2) and yaws (k,) of one foot in the stances with these middles."""
     path, h = act.path, act.height_m
-    heading, share = path.facing_rad(middle_s), rise(path.speed_mps(middle_s) / 0.6)
+    heading, share = path.facing_rad(middle_s), rise(path.speed_mps(middle_s) / style.stepping_mps)
     aside = OUTWARD[side] * (HALF_STANCE * h * (1 - share) + style.half_stance_m * share) + weave_m(middle_s)
     velocity = path.position_m(middle_s + 0.01) - path.position_m(middle_s - 0.01)
     cos, sin = np.cos(heading), np.sin(heading)

@@ -241,8 +241,15 @@ def downward_dog(act: StepContext) -> None:
     act.arm((2.75, 0.12, 0.0, 0.08), held)
 
 
-def _there_and_back(act: StepContext, usual_s: float, min_s: float, max_s: float) -> PerTime:
-    """0 to 1 and back (n,), as often as stated or as time permits, each slightly different and with a hold."""
+def there_and_back(act: StepContext, usual_s: float, min_s: float, max_s: float) -> PerTime:
+    """0 to 1 and back (n,), as often as stated or as time permits, each slightly different and with a hold.
+
+    Args:
+        act: Context of the step; its random stream is consumed.
+        usual_s: Usual duration of one repetition in seconds.
+        min_s: Minimum duration.
+        max_s: Maximum duration.
+    """
     ramp = 0.5 * (1 - act.uniform(0.05, 0.3))
     spans = act.in_turn(usual_s, min_s, max_s)
     return np.sum([act.vary(1.0, 0.06) * span.plateau(0, 0.98, ramp, ramp) for span in spans], axis=0)
@@ -251,7 +258,7 @@ def _there_and_back(act: StepContext, usual_s: float, min_s: float, max_s: float
 @posture("side_lunge")
 def side_lunging(act: StepContext) -> None:
     """From a wide stance the weight shifts over one bent knee; the arms are held out to the sides."""
-    h, side, down = act.height_m, act.leg_side(), _there_and_back(act, 3.0, 1.4, 5.0)
+    h, side, down = act.height_m, act.leg_side(), there_and_back(act, 3.0, 1.4, 5.0)
     half = act.vary(0.1, 0.12) * h  # widening of the stance per foot
     for foot in BOTH:
         act.move_foot(foot, out=half)
@@ -268,7 +275,7 @@ def side_lunging(act: StepContext) -> None:
 @posture("limb_extension")
 def limb_extension(act: StepContext) -> None:
     """One straight leg moves out to the side and the arm of the same side up; then both return."""
-    side, up, leg_m = act.leg_side(), _there_and_back(act, 2.8, 1.3, 4.5), act.body.leg_m
+    side, up, leg_m = act.leg_side(), there_and_back(act, 2.8, 1.3, 4.5), act.body.leg_m
     angle, over = act.vary(0.62, 0.2) * up, reached(2.5 * up)
     act.lean_over(1 - side, over)
     act.lift_weight(side, reached(3 * up))
@@ -282,7 +289,7 @@ def limb_extension(act: StepContext) -> None:
 @gesture("arm_extension")
 def arm_extension(act: StepContext) -> None:
     """The straight arm rises at the side until the hand is at head height, and comes down, repeatedly."""
-    up, top, arms = _there_and_back(act, 4.0, 1.1, 6.0), act.vary(2.0, 0.07), act.sides()
+    up, top, arms = there_and_back(act, 4.0, 1.1, 6.0), act.vary(2.0, 0.07), act.sides()
     for side in arms:
         _raise_arm_aside(act, side, up, top)
         act.add(up, spine_roll=OUTWARD[side] * 0.04 * (len(act.sides()) == 1))

@@ -66,25 +66,25 @@ def _kneel(act: StepContext, u: PerTime) -> None:
 @posture("lie_down")
 def lying_down(act: StepContext) -> None:
     """From standing to lying, slowly."""
-    _lie_down(act, act.since_start(2.3, 5.0, 3.6, 2.5, 0.95))
+    lie_down(act, act.since_start(2.3, 5.0, 3.6, 2.5, 0.95))
 
 
 @posture("fall")
 def falling(act: StepContext) -> None:
     """Loss of balance, and down to the floor within about a second."""
-    _lie_down(act, act.since_start(1.15, 1.7, 1.4, 1.2, 0.9), falls=True)
+    lie_down(act, act.since_start(1.15, 1.7, 1.4, 1.2, 0.9), falls=True)
 
 
 @posture("lie")
 def lying(act: StepContext) -> None:
     """Lying still."""
-    _lie_down(act, np.ones_like(act.time_s))
+    lie_down(act, np.ones_like(act.time_s))
 
 
 @posture("get_up")
 def getting_up(act: StepContext) -> None:
     """From lying to standing."""
-    _lie_down(act, 1 - act.since_start(2.5, 5.0, 3.8, 2.7, 0.95))
+    lie_down(act, 1 - act.since_start(2.5, 5.0, 3.8, 2.7, 0.95))
 
 
 @posture("roll_over")
@@ -112,8 +112,14 @@ def roll(act: StepContext) -> None:
             act.add(over, foot, knee_out=OUTWARD[foot] * left * 0.25 * np.pi)
 
 
-def _lie_down(act: StepContext, u: PerTime, *, falls: bool = False) -> None:
-    """From standing (`u` = 0) to lying (1), (n,), on a side, the belly or the back, as stated."""
+def lie_down(act: StepContext, u: PerTime, *, falls: bool = False) -> None:
+    """From standing to lying on a side, the belly or the back, as stated.
+
+    Args:
+        act: Context whose controls are written.
+        u: Progress (n,): 0 standing, 1 lying.
+        falls: Whether the body falls instead of being lowered.
+    """
     if act.style in ("left", "right"):
         lie_down_on_side(act, u)
     else:
@@ -129,17 +135,22 @@ def _lower_pelvis(act: StepContext, u: PerTime, movement: str, heights: list[flo
     return rise(u / 0.6)
 
 
-def lie_down_on_side(act: StepContext, u: PerTime) -> None:
+def lie_down_on_side(
+    act: StepContext, u: PerTime, movement: str = "lie_on_side", heights_m: tuple[float, ...] = ()
+) -> None:
     """Onto one's own left or right side: that knee gives way, hip and then trunk land, knees bent, an arm ahead.
 
     Args:
         act: Context whose controls are written.
         u: Progress (n,): 0 standing, 1 lying.
+        movement: Keyframes in `movements.toml`.
+        heights_m: Heights of the pelvis at the keyframes after the first; empty for those of lying down.
     """
-    h, side, movement = act.height_m, LEFT if act.style == "left" else RIGHT, "lie_on_side"
+    h, side = act.height_m, LEFT if act.style == "left" else RIGHT
     left, u = OUTWARD[side], np.clip(u, 0.0, 1.0)
     stand = act.body.pelvis_height_m(STAND_STRETCH)
-    down = _lower_pelvis(act, u, movement, [stand - 0.1 * h, 0.17 * h, 0.115 * h, LYING_M * h + 0.025 * h])
+    heights_m = heights_m or (stand - 0.1 * h, 0.17 * h, 0.115 * h, LYING_M * h + 0.025 * h)
+    down = _lower_pelvis(act, u, movement, [*heights_m])
     act.pelvis(left=left * spline_through(u, MOVEMENTS[movement]["at"], MOVEMENTS[movement]["aside"]) * h)
     act.bend_knees(rise(3 * u))
     act.controls.knee_out_rad[:] *= 1 - down[:, None]
