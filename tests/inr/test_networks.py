@@ -52,10 +52,11 @@ def test_a_fresh_modulation_is_the_identity():
 def test_modulation_scales_and_shifts_before_the_activation():
     inr = ModulatedINR(num_frames=2)
     with torch.no_grad():
-        inr.gamma[1, 3], inr.beta[1, 3] = 0.0, -1.0  # ReLU of -1: the last layer sees nothing of the second frame
-    out, (_, bias) = inr(torch.rand(2, 5, 3)), inr.layers(inr.theta)[-1]
-    assert torch.allclose(out[1], bias.expand(5, 2))
-    assert not torch.allclose(out[0], bias.expand(5, 2))
+        inr.gamma[1, 3], inr.beta[1, 3] = 0.0, 2.0  # all that the last layer sees of the second frame is ReLU(2)
+    out, (weight, bias) = inr(torch.rand(2, 5, 3)), inr.layers(inr.theta)[-1]
+    expected = (2 * weight.sum(1) + bias).expand(5, 2)
+    assert torch.allclose(out[1], expected, atol=1e-5)
+    assert not torch.allclose(out[0], expected, atol=1e-2)
 
 
 def test_weights_from_outside_replace_the_own_ones():
@@ -84,6 +85,6 @@ def test_between_frames_modulations_are_interpolated():
     inr = ModulatedINR(num_frames=3)
     torch.nn.init.normal_(inr.gamma)
     gamma, beta = inr.modulation(torch.tensor([0.0, 0.5, 2.0, 7.0]))
-    assert torch.allclose(gamma[1], (inr.gamma[0] + inr.gamma[1]) / 2)
+    assert torch.allclose(gamma[1], (inr.gamma[0] + inr.gamma[1]) / 2, atol=1e-6)
     assert torch.equal(gamma[3], inr.gamma[2])
     assert beta.shape == (4, 4, 32)
