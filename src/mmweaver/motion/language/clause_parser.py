@@ -35,7 +35,7 @@ from mmweaver.motion.language.lexicon import (
     THINGS,
 )
 from mmweaver.motion.language.measures import CADENCE, SPEED
-from mmweaver.motion.language.modifiers import GAIT, modifiers
+from mmweaver.motion.language.modifiers import STYLE, modifiers
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.places import AIM, Place, place_of
 from mmweaver.motion.language.places import MARK as PLACE
@@ -347,6 +347,6 @@ _KNOWN = frozenset().union(
 def is_known(word: Word) -> bool:
     """Whether a word has a known meaning, or none that matters, in a sentence about a movement."""
     text = word.text
-    is_token = text.startswith((AIM, "arc", "deg", "from_", "on_", "fraction_", "rounds_", SPEED, CADENCE, GAIT))
+    is_token = text.startswith((AIM, "arc", "deg", "from_", "on_", "fraction_", "rounds_", SPEED, CADENCE, STYLE))
     is_token |= len(text) == 1
     return word.is_verb or text in _KNOWN or is_token or text.replace(".", "").isdigit()

@@ -17,7 +17,7 @@ _LEGGED = frozenset({"walk", "run", "jog", "jump", "hop", "leap", "step", "go", 
 _OF_A_LEG = frozenset({"ankle", "thigh", "calf", "shin", "heel", "toe", "toes"})
 _OF_THE_BODY = frozenset({"shoulder", "elbow", "ear", "eye", "cheek", "hip", "buttock", "breast", "collar"})
 _THAT_ONE = ("first", "second", "this", "that", "the", "other", "each", "every", "no", "which")
-GAIT = "gait_"  # begins a token for the style of a walk: gait_cane
+STYLE = "style_"  # begins a token for the style of a step: style_cane
 _TOKENS = ("onback", "onbelly", "lookdown", "highkick", "frontlunge")
 
 
@@ -173,7 +173,7 @@ def _token(about: Step, text: str, texts: set[str]) -> Step:
         "swipe_up": "up",
         "swipe_down": "down",
     }
-    style = text.removeprefix(GAIT) if text.startswith(GAIT) else about.style
+    style = text.removeprefix(STYLE) if text.startswith(STYLE) else about.style
     return replace(about, style=styles.get(text, style))
 
 

@@ -110,6 +110,19 @@ def body_phrase(step: Step) -> str:
     return f"{name}{paces}{_way(step)}{SPEEDS_SAID[step.speed]}{frequency_text(step, step.lower)}"
 
 
+def _support(step: Step) -> str:
+    """Seat, direction on it or from it, or manner of sitting on the floor."""
+    if step.posture == "ground":
+        return {"crossed": " cross-legged", "legs_out": " with the legs stretched out"}.get(step.style, "")
+    if step.lower == "fall_off":
+        return f" to the person's {step.style}"
+    if step.lower == "seated_lean":
+        aside = f" to the person's {step.direction}" if step.direction in _SIDES else " forwards"
+        return " backwards" if step.direction == Way.BACKWARDS else aside
+    named = step.seat and step.lower not in ("stand_up", "slip", "floor_rise", "fall_out_of_bed")
+    return f" on the {step.seat}" if named else ""
+
+
 def _way(step: Step) -> str:
     """Direction, support or side of lying of a step."""
     if step.lower in _LYING:
@@ -118,15 +131,8 @@ def _way(step: Step) -> str:
         return ""
     if step.style == "knee":
         return f" on the {step.foot} knee" if step.foot else " on one knee"
-    if step.lower in ("fall_out_of_bed", "slip"):
-        return ""
-    if step.lower == "fall_off":
-        return f" to the person's {step.style}"
-    if step.lower == "seated_lean":
-        aside = f" to the person's {step.direction}" if step.direction in _SIDES else " forwards"
-        return " backwards" if step.direction == Way.BACKWARDS else aside
-    if step.uses_seat:
-        return f" on the {step.seat}" if step.seat and step.lower != "stand_up" else ""
+    if step.uses_seat or step.posture == "ground" or step.lower in ("slip", "floor_rise"):
+        return _support(step)
     if step.lower == "lean":
         way = {Way.BACKWARDS: " backwards", None: " to one side"}.get(
             step.direction, f" to the person's {step.direction}"
@@ -363,9 +369,15 @@ def doing(step: Step) -> str:
     )
 
 
-RISING = {"seat": ("stand_up",), "knees": ("kneel_up",), "floor": ("get_up",), "couch": ("sit_up", "stand_up")}
-STILL = {"seat": "sit", "knees": "kneel", "floor": "lie", "couch": "lie_on_seat"}
-_WITH_FREE_HANDS = ("sit_down", "kneel_down")
+RISING = {
+    "seat": ("stand_up",),
+    "knees": ("kneel_up",),
+    "floor": ("get_up",),
+    "couch": ("sit_up", "stand_up"),
+    "ground": ("floor_rise",),
+}
+STILL = {"seat": "sit", "knees": "kneel", "floor": "lie", "couch": "lie_on_seat", "ground": "floor_sit"}
+_WITH_FREE_HANDS = ("sit_down", "kneel_down", "floor_sit_down")
 # Activities done lying, and on which side; "": on either.
 LYING = {"push_ups": "front", "plank": "front", "sit_ups": "back", "roll_over": "", "try_to_get_up": ""}
 _ITS_PLACE = re.compile(r"back[_ ]to[_ ]start|\b(?:position|place|spot|pose|posture|stance)\b")
@@ -374,7 +386,13 @@ _WAYS_OF_FALLING = words_in("back backwards backward onback onbelly forward forw
 # Activities of a sitter, and those that a sitter does differently from somebody who stands.
 SEATED = words_in("knee_extension seated_march seated_lean seated_reach cross_legs")
 _SEATED_FORMS = {"march": "seated_march", "lean": "seated_lean", "bend": "seated_lean", "pick_up": "seated_reach"}
-ENTERING = {"sit": "sit_down", "kneel": "kneel_down", "lie": "lie_down", "lie_on_seat": "recline"}
+ENTERING = {
+    "sit": "sit_down",
+    "kneel": "kneel_down",
+    "lie": "lie_down",
+    "lie_on_seat": "recline",
+    "floor_sit": "floor_sit_down",
+}
 
 
 def insert_transitions(steps: list[Step]) -> list[Step]:
@@ -397,7 +415,7 @@ def insert_transitions(steps: list[Step]) -> list[Step]:
 
 def _transitions_to(step: Step, posture: str, before: list[Step]) -> list[Step]:
     """The step as performed from a posture, after the transitions that it needs."""
-    if step.lower in ("stand_up", "kneel_up", "get_up"):
+    if step.lower in ("stand_up", "kneel_up", "get_up", "floor_rise"):
         return _rising(step, posture, before)
     if posture == "seat" and step.lower in _SEATED_FORMS and not (step.upper or step.direction == Shape.SPOT):
         style = "" if step.style == "held" else step.style
@@ -434,7 +452,7 @@ def _going_down(step: Step, posture: str, before: list[Step]) -> list[Step]:
         down = Step(lower="lie_down", style=LYING[step.lower] or "back", clause=step.clause)
         return [step] if is_there or not before else [*_rising_steps(posture, step), down, step]
     if posture == step.posture:
-        if step.lower in ("sit_down", "kneel_down", "lie_down", *FALLS):
+        if step.lower in ("sit_down", "kneel_down", "lie_down", "floor_sit_down", *FALLS):
             step = replace(step, lower=STILL[posture])
         return [step]
     first = _rising_steps(posture, step)
@@ -523,7 +541,7 @@ def _falling_on(steps: list[Step]) -> list[Step]:
 
 def _styled(steps: list[Step]) -> list[Step]:
     """Lying on back or belly as the person went down; kneeling on the named knee."""
-    style, foot, knee = "", "", ""
+    style, foot, knee, crossed = "", "", "", ""
     for k, step in enumerate(steps):
         if step.lower in LYING:
             style = LYING[step.lower] or style or "back"
@@ -533,10 +551,14 @@ def _styled(steps: list[Step]) -> list[Step]:
             foot, knee = step.foot or foot, step.style or knee
         if step.lower in ("lie", "get_up", "lie_down", *FALLS, *FALLS_OFF, *LYING):
             steps[k] = replace(step, style=style)
+        if step.posture == "ground":
+            crossed = step.style or crossed
+        if step.lower in ("floor_sit", "floor_rise"):
+            steps[k] = replace(step, style=crossed)
         if step.lower in ("kneel", "kneel_up"):
             steps[k] = replace(step, foot=foot, style=knee)
-        if step.lower in ("stand_up", "get_up", "kneel_up"):
-            style, foot, knee = "", "", ""
+        if step.lower in ("stand_up", "get_up", "kneel_up", "floor_rise"):
+            style, foot, knee, crossed = "", "", "", ""
     return steps
 
 
@@ -572,7 +594,7 @@ def merged(steps: list[Step]) -> list[Step]:
     result: list[Step] = []
     for number, step in enumerate(steps, start=1):
         plain = (
-            step.lower in ("sit", "stand", "kneel", "lie", "lie_on_seat")
+            step.lower in ("sit", "stand", "kneel", "lie", "lie_on_seat", "floor_sit")
             and not step.upper
             and not step.seconds
             and not step.facing
@@ -581,6 +603,7 @@ def merged(steps: list[Step]) -> list[Step]:
         same = {
             "sit": ("sit", "sit_down"),
             "kneel": ("kneel", "kneel_down"),
+            "floor_sit": ("floor_sit", "floor_sit_down"),
             "lie": ("lie", "lie_down", *FALLS, *FALLS_OFF),
             "lie_on_seat": ("lie_on_seat", "recline"),
         }.get(step.lower, (step.lower,))
@@ -596,7 +619,13 @@ def repeat_pairs(steps: list[Step], most: int) -> list[Step]:
         steps: Steps in temporal order.
         most: Number of steps up to which pairs are repeated.
     """
-    pairs = {"stand_up": "sit_down", "kneel_up": "kneel_down", "get_up": "lie_down", "sit_down": "stand_up"}
+    pairs = {
+        "stand_up": "sit_down",
+        "kneel_up": "kneel_down",
+        "get_up": "lie_down",
+        "floor_rise": "floor_sit_down",
+        "sit_down": "stand_up",
+    }
     result: list[Step] = []
     for number, step in enumerate(steps):
         result.append(step)

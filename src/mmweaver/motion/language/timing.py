@@ -15,7 +15,7 @@ PACING_S = 5.5  # "walks to and fro": there and back
 CRAWLING_TO_AND_FRO_S = 9.0
 TURN_M = 0.6  # a corner of a path takes as long as this distance
 SHORTEST_OF_SECONDS_S = 0.3  # of a step with a stated duration
-HELD_POSTURES = ("stand", "sit", "kneel", "lie", "lie_on_seat", "recline")
+HELD_POSTURES = ("stand", "sit", "kneel", "lie", "lie_on_seat", "recline", "floor_sit")
 FALLING_ON_S = (0.8, 1.0)  # minimum and natural time of a stumble that ends in a fall
 REPEATED_FROM = 2  # a sentence that fits this often into the time is repeated
 
@@ -124,8 +124,15 @@ def repeated(plan: MotionPlan, duration_s: float) -> MotionPlan:
 
 def _posture_before(step: Step) -> str:
     """The posture in which a step begins."""
-    rising = {"stand_up": "seat", "kneel_up": "knees", "get_up": "floor", "sit_up": "couch"}
-    held = {"sit": "seat", "kneel": "knees", "lie": "floor", "lie_on_seat": "couch", "recline": "seat"}
+    rising = {"stand_up": "seat", "kneel_up": "knees", "get_up": "floor", "sit_up": "couch", "floor_rise": "ground"}
+    held = {
+        "sit": "seat",
+        "kneel": "knees",
+        "lie": "floor",
+        "lie_on_seat": "couch",
+        "recline": "seat",
+        "floor_sit": "ground",
+    }
     return rising.get(step.lower) or held.get(step.lower, "feet")
 
 

@@ -28,7 +28,13 @@ UNCOUNTED = words_in(
     "march knock nod shake_head cough count_fingers sit_down stand_up kneel_up get_up kneel_down lie_down"
 )
 LEGS_UP = ("leg_aside", "knee_extension", "kick", "roundhouse", "side_kick", "stomp", "raise_leg", "one_leg")
-POSTURE_OF = {"seat": ("seat",), "couch": ("floor", "seat"), "knees": ("knees", "floor"), "floor": ("floor",)}
+POSTURE_OF = {
+    "seat": ("seat",),
+    "couch": ("floor", "seat"),
+    "knees": ("knees", "floor"),
+    "floor": ("floor",),
+    "ground": ("floor", "seat"),
+}
 HELD_BY_HABIT = ("carry", "phone", "cradle", "tennis_serve")  # both hands, or either, may be used
 
 

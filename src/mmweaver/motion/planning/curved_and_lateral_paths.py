@@ -185,11 +185,13 @@ def check_floor_space(trajectory: Trajectory, step: Step, body: SkeletonProporti
     Raises:
         NoTrajectory: If the body would penetrate furniture on a floor that is not tight.
     """
-    if step.posture not in ("floor", "knees") and step.lower not in ("kneel_up", "get_up"):
+    if step.posture not in ("floor", "knees", "ground") and step.lower not in ("kneel_up", "get_up", "floor_rise"):
         return
     h = body.height_m
     if step.lower == "crawl":
         low, high = -0.4 * h, 0.55 * h
+    elif step.posture == "ground" or step.lower == "floor_rise":
+        low, high = -0.4 * h, 0.35 * h
     elif step.posture == "knees" or step.lower == "kneel_up":
         low, high = -0.4 * h, 0.15 * h
     elif step.style == "front" or step.lower == "push_ups":

@@ -191,10 +191,12 @@ class CandidateSampler:
 
     def _is_down_there(self, number: int) -> bool:
         """Whether the body still lies or kneels as the previous motion left it, or rises from there in this step."""
-        down = "" if self.after is None or self.after.posture not in ("floor", "knees") else self.after.posture
+        down = (
+            "" if self.after is None or self.after.posture not in ("floor", "knees", "ground") else self.after.posture
+        )
         before, step = self.plan.steps[:number], self.plan.steps[number]
         stayed = bool(down) and all(one.posture == down for one in before)
-        return stayed and (step.posture == down or step.lower in ("get_up", "kneel_up"))
+        return stayed and (step.posture == down or step.lower in ("get_up", "kneel_up", "floor_rise"))
 
     @cached_property
     def _asked(self) -> list[list[Quantity]]:
@@ -282,7 +284,7 @@ class CandidateSampler:
         facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(self.rng.normal(0, 0.2), -0.4, 0.4))
         if self.off_radar_rad is not None and not first.moves:
             facing = bearing_rad(-spot) + self.off_radar_rad
-        if any(step.posture in ("floor", "knees") for step in self.plan.steps):
+        if any(step.posture in ("floor", "knees", "ground") for step in self.plan.steps):
             facing = float(self.rng.uniform(-np.pi, np.pi))  # wherever the floor is free
         if first.lower == "turn" and any(step.moves for step in self.plan.steps) and self.rng.random() < 0.5:
             facing = float(self.rng.uniform(-np.pi, np.pi))  # what follows needs floor in some direction
