@@ -62,6 +62,7 @@ bench: $(STAMP)
 	$(BIN)/python benchmarks/dataset.py
 	$(BIN)/python benchmarks/radar_dataset.py
 	$(BIN)/python benchmarks/checksums.py
+	$(BIN)/python benchmarks/recordings.py
 
 faults: $(STAMP)  ## kills, full disks and failed writes at every event of every command that writes; an hour or more
 	$(BIN)/python -m pytest -n 0 -m 'slow or not slow' tests/faults

@@ -108,7 +108,8 @@ def of_page(address: str, pid: int) -> dict[str, float]:
         in_browser = browser_cpu_seconds()
         page.wait_for_function(f"() => studio.live.frames > {LIVE_FRAMES}", timeout=300_000)
         wall_s, browser_s, draws = (
-            time.perf_counter() - begun, browser_cpu_seconds() - in_browser, page.evaluate("studio.player.scene.draws") - drawn
+            time.perf_counter() - begun, browser_cpu_seconds() - in_browser,
+            page.evaluate("studio.player.scene.draws") - drawn,
         )  # fmt: skip
         served_s = cpu_seconds(pid) - cpu
         made_s = 0.1 * (page.evaluate("studio.live.frames") - frames)

@@ -23,13 +23,12 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 from mmweaver.scene.procedural.procedural_room import make_room  # noqa: E402
-from tests.browser.chromium import FLAGS, needs_browser, running_studio  # noqa: E402
+from tests.browser.chromium import FLAGS, IDLE, READY, needs_browser, running_studio  # noqa: E402
 from tests.io.point_clouds.test_read_points import packet  # noqa: E402
 
 IMAGES = ROOT / "docs" / "images"
-READY, IDLE = "main[data-state=ready]", "main[data-busy=false]"
 FRAME_RATE_HZ, VIDEO_S = 10, 30
-SIZE: Any = {"width": 1280, "height": 800}
+SIZE: Any = {"width": 1440, "height": 900}
 
 
 def main() -> None:
@@ -46,7 +45,7 @@ def main() -> None:
         sync_playwright() as playwright,
     ):
         chromium = playwright.chromium.launch(executable_path=path, args=FLAGS)
-        page = chromium.new_page(viewport=SIZE, bypass_csp=True)
+        page = chromium.new_page(viewport=SIZE, bypass_csp=True, reduced_motion="reduce")
         page.goto(address)
         page.wait_for_selector(READY, timeout=180_000)
         take_pictures(page)
@@ -65,7 +64,7 @@ def take_pictures(page: Any) -> None:
     page.evaluate("studio.player.seek(9)")
     take(page, "studio")
     page.get_by_role("button", name="Compare").click()
-    page.locator(".method, select[aria-label=Method]").first.select_option("physics")
+    page.locator("select[aria-label=Method]").select_option("physics")
     page.wait_for_selector(IDLE, timeout=120_000)
     page.evaluate("studio.player.seek(9)")
     take(page, "studio_compare")
@@ -77,23 +76,32 @@ def take_pictures(page: Any) -> None:
     page.locator("select[aria-label=Method]").select_option("auto")
     page.wait_for_selector(IDLE, timeout=120_000)
     ask(page, "a person walks to the left")
+    page.evaluate("studio.player.seek(8)")
+    show_cell(page)
+    take(page, "studio_rays")
+    page.evaluate("studio.player.setRays(false)")
     draw_path(page)
     page.evaluate("studio.player.seek(12)")
     take(page, "studio_path")
     page.get_by_role("button", name="Details").click()
     take(page, "studio_details")
     page.get_by_role("button", name="Close").click()
-    page.evaluate("studio.follow({path: null})")
+    page.evaluate("studio.follow({change: {path: null}})")
     page.wait_for_selector(IDLE, timeout=120_000)
-    ask(page, "a person flies")
+    ask(page, "a person juggles five balls while riding a unicycle")
+    take(page, "studio_clauses")
+    ask(page, "a person walks behind the sofa")
     take(page, "studio_error")
     ask(page, "a person claps")
     page.get_by_role("button", name="Live").click()
-    page.wait_for_function("() => studio.live && studio.live.frames > 60", timeout=120_000)
+    page.wait_for_function("() => studio.live?.frames > 60", timeout=120_000)
     take(page, "studio_live")
     page.get_by_role("button", name="Stop").click()
     ask(page, "a person sits down")
     page.emulate_media(color_scheme="dark")
+    page.set_viewport_size({"width": 3840, "height": 2160})
+    page.wait_for_timeout(500)
+    take(page, "studio_4k")
     page.set_viewport_size({"width": 390, "height": 1500})
     page.wait_for_timeout(500)
     take(page, "studio_phone")
@@ -120,6 +128,15 @@ def take_pictures_of_files(page: Any, folder: Path) -> None:
     Image.fromarray(np.full((480, 640), 450, np.uint16)).save(folder / "depth.png")
     drop(page, [folder / "rgb.png", folder / "depth.png"])
     take(page, "studio_no_floor")
+
+
+def show_cell(page: Any) -> None:
+    """Clicks the cell of range-azimuth in which the person is."""
+    place = page.evaluate("studio.result.joint(0, studio.player.frame, 0)")
+    box = page.locator("canvas[aria-label^='Range-azimuth']").bounding_box()
+    x, y = page.evaluate(f"(c => [c.px({place[0]}), c.py({place[1]})])(studio.player.panel('range_azimuth'))")
+    page.mouse.click(box["x"] + x, box["y"] + y)
+    page.wait_for_function("studio.player.scene.raysDrawn > 0")
 
 
 def drop(page: Any, files: list[Path]) -> None:
@@ -229,7 +246,7 @@ def film(page: Any, mesh: Path) -> Iterator[np.ndarray]:
     page.get_by_role("button", name="Compare").click()
     page.locator("select[aria-label=Method]").select_option("auto")
     page.wait_for_selector(IDLE, timeout=120_000)
-    page.evaluate("studio.follow({path: null})")
+    page.evaluate("studio.follow({change: {path: null}})")
     page.wait_for_selector(IDLE, timeout=120_000)
     drop(page, [mesh])
     yield from played()
@@ -238,7 +255,7 @@ def film(page: Any, mesh: Path) -> Iterator[np.ndarray]:
     page.locator("select[aria-label=Room]").select_option("demo")
     page.wait_for_selector(IDLE, timeout=120_000)
     page.get_by_role("button", name="Live").click()
-    page.wait_for_function("() => studio.live && studio.live.frames > 30", timeout=120_000)
+    page.wait_for_function("() => studio.live?.frames > 30", timeout=120_000)
     for _ in range(6 * FRAME_RATE_HZ):
         yield shot()
 

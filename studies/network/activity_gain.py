@@ -115,7 +115,7 @@ Method = Callable[[UnseenRoom], Maker]
 def motions_in(room: UnseenRoom, each: int, seed: int) -> list[tuple[str, PoseSequence]]:
     """`each` motions of every activity, placed in the room of the photo; motions without a place are omitted."""
     rng, motions = stream(seed, "activity gain", room.name), []
-    withheld = set(read_plan(room.room.folder.parent)["withheld"]["test_people"])
+    withheld = set(read_plan(Path(room.room.folder.parent))["withheld"]["test_people"])
     people = [person for person in range(len(PEOPLE_HEIGHT_M)) if person not in withheld]
     for activity, sentences in ACTIVITIES.items():
         for number in range(each):

@@ -21,7 +21,9 @@ from studies.report.table_layouts import MatrixTable, MetricTable, PivotTable, R
 
 FIDELITY_SCORES = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
 FIDELITY = RowTable(
-    sources=tuple(f"field_fidelity/{name}" for name in ("inr_paper", "inr_smooth_short", "scatterers")),
+    sources=tuple(
+        f"field_fidelity/{name}" for name in ("inr_paper", "inr_smooth_short", "inr_modulated", "scatterers")
+    ),
     before=(("*zeros*", "baseline.zeros"), ("*static_mean*", "baseline.static_mean"),
             ("*other realization*", "oracle.realization"), ("*noise_free*", "oracle.noise_free")),
     columns=(("signal", "{dataset.name}"), ("method", "{label}"), ("values", "{size.values:,}"),

@@ -8,24 +8,38 @@ DEMO = f"generate --demo {SHORT}"
 ONE = f"{DEMO} --frames 1"
 
 ROWS = (
-    Row("class mask (--classes)", f"{ONE} --text 'a person walks to the sink'", (add("--landmark", "sink=0.3,2.3"),)),
-    Row(
-        "class mask (--classes)",
-        f"{ONE} --text 'a person walks to the wardrobe'",
-        (add("--landmark", "wardrobe=0.3,2.3"),),
+    *(
+        Row(
+            "or a class mask (--classes),",
+            f"{ONE} --missing refuse --text 'a person {text}'",
+            (add("--landmark", f"{kind}=0.3,2.3"),),
+        )
+        for kind, text in (
+            ("sink", "walks to the sink"),
+            ("lamp", "points at the lamp"),
+            ("bin", "stands at the bin"),
+        )
     ),
     Row(
-        "class mask (--classes)", f"{ONE} --text 'a person walks to the fridge'", (add("--landmark", "fridge=0.3,2.3"),)
+        " put one there with --furnish □=X,Y,",
+        f"{ONE} --missing refuse --text 'a person walks to the wardrobe'",
+        (add("--furnish", "wardrobe=0.9,2.6"),),
     ),
     Row(
-        "or say another side to face",
-        f"{ONE} --text 'a person points at the lamp'",
-        (add("--landmark", "lamp=0.3,2.3"),),
+        "room stand for it with --missing stand-in",
+        f"{ONE} --missing refuse --text 'a person sits on the bed'",
+        (
+            instead("with --missing stand-in", "refuse", "stand-in"),
+            add("--furnish", "bed=-0.6,2.2"),
+        ),
     ),
     Row(
-        " give its position with --landmark □=X,Y, or",
-        f"{ONE} --text 'a person stands near the plant'",
-        (add("--landmark", "plant=0.3,2.3"),),
+        "or leave out --strict",
+        f"{ONE} --strict --text 'a person walks 9 m to the left'",
+        (
+            drop("--strict"),
+            instead("word it otherwise", "'a person walks 9 m to the left'", "'a person stands'"),
+        ),
     ),
     Row(
         "try --range □,□",

@@ -188,14 +188,10 @@ def test_a_recording_is_compared_with_a_simulation(page: Any, tmp_path: Path):
     drop(page, [tmp_path / "made.cfg", tmp_path / "adc_data.bin"])
     assert "adc_data.bin" in page.inner_text(".shown-title")
     assert "over noise" in page.inner_text(".colour-bar")
-    canvas = page.locator("canvas[aria-label^='B \N{MINUS SIGN} A: Range-Doppler']")
-    box = canvas.bounding_box()
-    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-    assert (
-        page.locator("figure:has(canvas[aria-label^='B \N{MINUS SIGN} A: Range-Doppler']) output")
-        .inner_text()
-        .endswith("dB")
-    )
+    panel = "studio.player.panel('range_doppler', 'difference')"
+    near = page.evaluate("Math.max(...[studio.player.sequence, studio.result].map(one => one.header.range_m[0]))")
+    page.evaluate(f"{panel}.onHover({{range: {near + 0.3}, velocity: 0}})")
+    assert page.evaluate(f"{panel}.root.querySelector('output').textContent").endswith(" dB")
     page.get_by_role("button", name="Compare").click()
     assert page.locator(".maps canvas[aria-label]").count() == 3
     assert "s of radar in" in ask(page, "a person walks to the right")
@@ -385,3 +381,139 @@ def test_the_offline_page_plays(page: Any, browser: Any, tmp_path: Path):
     assert json.loads(alone.evaluate("JSON.stringify(player.sequence.header.frames)")) == 20
     assert complaints == []
     context.close()
+
+
+def test_a_click_on_a_cell_shows_the_paths_that_made_it(page: Any):
+    ask(page, "a person walks to the left")
+    page.evaluate("studio.player.seek(8)")
+    pelvis = page.evaluate("studio.result.joint(0, 8, 0)")
+    box = page.locator("canvas[aria-label^='Range-azimuth']").bounding_box()
+    x, y = page.evaluate(f"(c => [c.px({pelvis[0]}), c.py({pelvis[1]})])(studio.player.panel('range_azimuth'))")
+    page.mouse.click(box["x"] + x, box["y"] + y)
+    page.wait_for_function("studio.player.scene.raysDrawn > 0 && !document.querySelector('.rays').hidden")
+    told = page.inner_text(".rays")
+    assert "in this cell" in told
+    assert "body: " in told
+    assert " dBm" in told
+    few = page.evaluate("studio.player.scene.raysDrawn")
+    page.keyboard.press("Escape")
+    page.wait_for_function(f"studio.player.scene.raysDrawn > {few}")
+    page.keyboard.press("r")
+    page.wait_for_function("studio.player.scene.raysDrawn === 0")
+
+
+def test_what_was_not_done_is_next_to_the_picture(page: Any):
+    ask(page, "a person juggles five balls while riding a unicycle")
+    chips = page.locator(".facts .clause")
+    clauses = page.evaluate("studio.result.header.meta.clauses")
+    assert chips.count() == len(clauses) >= 2
+    assert page.locator(".facts .approximated, .facts .not-done").count() == sum(c["status"] != "done" for c in clauses)
+    assert "dBm" in page.inner_text(".facts .noise")
+
+
+def test_warnings_of_a_recording_are_next_to_the_picture(page: Any):
+    page.evaluate("""(() => { const {sequence} = studio.player;
+        const meta = {...sequence.header.meta, warnings: ['stripes: read with --radar of another board']};
+        sequence.header = {...sequence.header, meta}; studio.player.show(sequence); })()""")
+    assert "stripes" in page.inner_text(".facts .warning")
+    assert "--" not in page.inner_text(".facts")
+
+
+def test_a_landmark_is_shown_by_a_click(page: Any):
+    ask(page, "a person walks to the door")
+    assert "no door is in the picture" in page.inner_text(".facts .approximated")
+    page.get_by_role("button", name="show where the door is").click()
+    x, y = page.evaluate("studio.player.scene.toPage(0.5, 2.2)")
+    page.mouse.click(x, y)
+    page.wait_for_selector(IDLE, timeout=60_000)
+    assert "s of radar in" in said(page)
+    assert "--landmark=door=" in page.evaluate("studio.result.header.command")
+    page.evaluate("studio.dispatch({type: 'edit', change: {landmarks: []}})")
+    ask(page, "a person waves")
+
+
+def test_back_and_forward_go_through_what_was_made(page: Any):
+    ask(page, "a person claps")
+    ask(page, "a person sits down")
+    page.go_back()
+    page.wait_for_function("() => studio.state.phase === 'idle' && studio.state.shown?.name === 'a person claps'")
+    assert page.locator(".sentence").first.input_value() == "a person claps"
+    page.go_forward()
+    page.wait_for_function("() => studio.state.phase === 'idle' && studio.state.shown?.name === 'a person sits down'")
+
+
+def test_a_keyboard_alone_reaches_and_does_everything(page: Any):
+    """Every control takes the focus by Tab, and shortcuts work wherever it is."""
+    page.evaluate("document.activeElement.blur()")
+    page.keyboard.press("/")
+    assert page.evaluate("document.activeElement.className") == "sentence"
+    page.keyboard.type("a person claps")
+    page.keyboard.press("Enter")
+    page.wait_for_function("() => studio.state.phase === 'idle' && studio.state.shown?.name === 'a person claps'")
+    reached = set()
+    for _ in range(60):
+        page.keyboard.press("Tab")
+        reached.add(page.evaluate("document.activeElement.outerHTML.slice(0, 120)"))
+    wanted = page.evaluate("""[...document.querySelectorAll(
+        'button, select, textarea, input, canvas[tabindex], summary')]
+        .filter(e => e.tabIndex >= 0 && e.checkVisibility({contentVisibilityAuto: true}) && !e.disabled)
+        .map(e => e.outerHTML.slice(0, 120))""")
+    assert set(wanted) - reached == set()
+    page.locator(".sentence").first.focus()
+    page.keyboard.press("Escape")
+    frame = page.evaluate("studio.player.frame")
+    page.keyboard.press("ArrowRight")
+    assert page.evaluate("studio.player.frame") == frame + 1
+    for key, state in (("m", "studio.player.settings.value.moving"), ("l", "studio.player.settings.value.loop")):
+        before = page.evaluate(state)
+        page.keyboard.press(key)
+        assert page.evaluate(state) != before
+        page.keyboard.press(key)
+    page.keyboard.press("?")
+    page.wait_for_selector("dialog[open] kbd")
+    page.keyboard.press("Escape")
+    page.locator("canvas[aria-label^='Range-Doppler']").focus()
+    for _ in range(3):
+        page.keyboard.press("Shift+ArrowUp")
+    assert "m/s" in page.inner_text(".reading")
+    page.keyboard.press("Enter")
+    page.wait_for_function("studio.player.cell !== null")
+    page.keyboard.press("Escape")
+    page.evaluate("studio.player.setRays(false)")
+
+
+def test_theme_and_layout_are_kept(page: Any, browser: Any, address: Running):
+    context = browser.new_context(reduced_motion="reduce")
+    own = context.new_page()
+    own.goto(address)
+    own.wait_for_selector(READY, timeout=120_000)
+    own.keyboard.press("t")
+    own.keyboard.press("p")
+    theme = own.evaluate("[...studio.root.classList].sort().join()")
+    own.reload()
+    own.wait_for_selector(READY, timeout=120_000)
+    assert own.evaluate("[...studio.root.classList].sort().join()") == theme
+    assert "folded" in theme
+    context.close()
+
+
+@pytest.mark.parametrize("width", [390, 1440, 3840])
+def test_targets_and_letters_fit_the_screen(page: Any, width: int):
+    page.set_viewport_size({"width": width, "height": round(width * 0.6) if width > 390 else 844})
+    page.wait_for_timeout(200)
+    scene, window = page.locator(".scene").bounding_box(), page.evaluate("innerWidth")
+    small = page.evaluate("""[...document.querySelectorAll('button, select, summary')]
+        .filter(e => e.offsetParent !== null && e.getBoundingClientRect().height < 43.5)
+        .map(e => [e.outerHTML.slice(0, 80), e.getBoundingClientRect().height])""")
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    assert width > 390 or small == []
+    assert scene["width"] >= (0.45 if width > 390 else 0.9) * window  # most of the width is the room's
+    page.set_viewport_size({"width": 1280, "height": 860})
+
+
+def test_pictures_of_the_panels_are_saved(page: Any):
+    ask(page, "a person waves")
+    for kind, start in (("page-png", b"\x89PNG"), ("page-svg", b"<svg")):
+        with page.expect_download() as waited:
+            page.locator("select[aria-label=Export]").select_option(kind)
+        assert Path(waited.value.path()).read_bytes().startswith(start)

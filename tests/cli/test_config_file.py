@@ -13,6 +13,7 @@ from mmweaver.cli.arguments import parsed, request_toml
 from mmweaver.cli.main import main, parser_of
 from mmweaver.core.boards import AWR1843
 from mmweaver.core.errors import InputError
+from mmweaver.core.placed_thing import PlacedThing
 from mmweaver.io.npz_files import read_radar_npz
 from mmweaver.models.methods import Learned, Physics
 from mmweaver.propagation.static_paths import Propagation
@@ -56,7 +57,7 @@ def test_every_kind_of_value_comes_back(tmp_path: Path):
     again = options("generate", "--config", str(file))
     assert first == replace(again, config=None)
     assert first.heading_rad == pytest.approx(math.radians(-110.25))
-    assert first.landmark == [("door", (0.9, 2.8))]
+    assert first.landmark == [PlacedThing("door", (0.9, 2.8))]
 
 
 def test_the_command_line_goes_before_the_file_and_paths_are_the_files(tmp_path: Path):

@@ -8,6 +8,7 @@ import pytest
 from PIL import Image
 
 from mmweaver.cli.main import main
+from mmweaver.datasets.room_sequences import read_labelled
 from mmweaver.inr import load
 from mmweaver.io.npz_files import read_radar_npz, write_radar_npz
 from tests.compression.echoes import error_db
@@ -50,6 +51,15 @@ def test_other_fields_are_fitted_too(walk: Path, tmp_path: Path, options: tuple[
     out = tmp_path / "a.safetensors"
     assert main(["fit", str(walk / "radar.npz"), *options, "--values", "1500", "-o", str(out), "--quiet"]) == 0
     assert load(out).num_values <= 1500
+
+
+def test_a_sequence_of_a_set_is_fitted(tiny_signals: Path, tmp_path: Path, capsys):
+    out, words = tmp_path / "a.safetensors", ["--field", "scatterers", "--values", "20000", "--quiet"]
+    assert main(["fit", str(tiny_signals), "--sequence", "1", "-o", str(out), *words]) == 0
+    truth = read_labelled(tiny_signals).cube(1).values
+    assert error_db(load(out).cube().values, truth) < -10
+    assert main(["fit", str(tiny_signals), "--sequence", "99", "-o", str(tmp_path / "no.safetensors"), *words]) == 2
+    assert "there is no sequence 99" in capsys.readouterr().err
 
 
 def test_the_papers_recipe_has_the_papers_network(walk: Path, tmp_path: Path):

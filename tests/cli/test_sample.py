@@ -61,3 +61,13 @@ def test_a_folder_that_holds_something_is_left_alone(tmp_path: Path, capsys: pyt
     assert main(["sample", str(tmp_path)]) == 2
     assert "--overwrite" in capsys.readouterr().err
     assert [file.name for file in tmp_path.iterdir()] == ["mine.txt"]
+
+
+def test_the_sample_recording_is_read_without_a_warning(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    """As README's example does: a room that fills the range axis of complex samples gives no hint to read I and Q
+    otherwise."""
+    assert main(["sample", str(tmp_path / "s"), "--quiet"]) == 0
+    sample = tmp_path / "s"
+    words = [str(sample / "empty.bin"), "--radar", str(sample / "profile.cfg"), "--out", str(tmp_path / "empty")]
+    assert main(["process", *words, "--no-pictures", "--no-analysis"]) == 0
+    assert "warning" not in capsys.readouterr().out

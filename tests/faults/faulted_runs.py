@@ -12,7 +12,7 @@ import io
 import mmap
 import shutil
 from collections.abc import Iterator
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -187,9 +187,15 @@ def _taken_from(results: dict[str, Any], owner: Any, name: str) -> Any:
     function = getattr(owner, name)
 
     def remembered(*arguments: Any, **options: Any) -> Any:
+        take_cube = options.pop("take_cube", None)  # of generate_room: called with each cube, which is remembered, too
         key = _key_of((name, arguments, options))
         if key not in results:
             results[key] = function(*arguments, **options)
+        if take_cube is not None:
+            for sequence in results[key].sequences:
+                take_cube(sequence.cube)
+            bare = tuple(replace(one, cube=None) for one in results[key].sequences)
+            return replace(results[key], sequences=bare)
         return results[key]
 
     return mock.patch.object(owner, name, remembered)

@@ -168,4 +168,6 @@ def _sets() -> list[tuple[str, str, bytes]]:
     }  # fmt: skip
     cases = {what: {name: json.dumps({**metadata, **change}).encode()} for what, change in changes.items()}
     cases["50 MB from 2 kB"] = {name.replace("zarr.json", "c/0"): summed(BOMB)}
-    return [("zarr set", what, archive_of(members)) for what, members in cases.items()]
+    flat = {"intrinsic/intrinsic_color.txt": b"100 0 31 0\n0 0 23 0\n0 0 1 0\n0 0 0 1\n"}
+    scans = [("scan of ScanNet", "focal length 0", archive_of(flat))]
+    return [*scans, *(("zarr set", what, archive_of(members)) for what, members in cases.items())]

@@ -109,11 +109,23 @@ def _clouds() -> list[Reader]:
     archives = [{"frame": np.array([3, 3, 5]), "pts": table}, {"frame": np.array([0, 1]), "pts": np.ones((2, 8))}]
 
     npz = {"damaged": lambda rng: m.mutated_npz(rng.choice(archives), rng)}
+    rows = [[*map(float, row), 21.5, 30.0, 255] for row in XYZV]
+    replay = {"cfg": [], "data": [{"frameData": {"frameNum": 3 + k, "pointCloud": rows[k:]}} for k in range(3)]}
+    stack = np.zeros((3, 4, 4, 5), np.float32)
+    stack[0, 0, :3] = table
     return [
         _read("points dat", ".dat", read_points, logs, wrong=_wrong_cloud),
         _read("points csv", ".csv", read_points, [csv], wrong=_wrong_cloud),
         _read("points RadHAR", ".txt", read_points, [radhar], wrong=_wrong_cloud),
         _read("points MM-Fi", ".bin", read_points, [table.astype("<f8").tobytes()], wrong=_wrong_cloud),
+        _read("points TI replay", ".json", read_points, [json.dumps(replay).encode()], wrong=_wrong_cloud),
+        Reader(
+            name="points stack",
+            suffix=".npy",
+            read=lambda path: read_points(path, "arrays"),
+            damaged=lambda rng: m.mutated_npy(stack, rng),
+            wrong=_wrong_cloud,
+        ),
         _read("points mHomeGes", ".npz", read_points, [], wrong=_wrong_cloud, **npz),
     ]
 

@@ -18,8 +18,10 @@ from mmweaver.core.records import AdcCube, CameraIntrinsics, PointCloud, PoseSeq
 from mmweaver.core.safe_files.safe_text import read_toml
 from mmweaver.core.skeleton import JOINT_NAMES, PARENTS
 from mmweaver.core.tensor_files import read_tensors, write_tensors
+from mmweaver.datasets.tensor_layouts import rf_genesis_settings
 from mmweaver.io.dca1000 import read_bin, write_bin
 from mmweaver.io.dca_packets import read_pcap
+from mmweaver.io.mapped_arrays import ArrayMapping, read_mapped
 from mmweaver.io.npz_files import (
     read_points_npz,
     read_poses_npz,
@@ -32,6 +34,7 @@ from mmweaver.io.radar_file import describe_radar, load_firmware, load_radar
 from mmweaver.io.raw_npy import read_adc_npy
 from mmweaver.motion.mocap.read_motion import read_motion
 from mmweaver.recordings.processing import process_recording
+from mmweaver.recordings.read_recording import read_recording
 from mmweaver.scene.photo.camera_file import intrinsics_for, read_camera_file
 from mmweaver.scene.photo.capture_photo import read_capture_photo
 from mmweaver.scene.photo.picture_files import read_depth, read_rgb
@@ -43,7 +46,9 @@ from tests.fuzz.harness import Reader, wrong_numbers
 from tests.fuzz.log_readers import log_readers
 from tests.fuzz.mesh_readers import mesh_readers
 from tests.fuzz.set_readers import set_readers
+from tests.io.test_infineon import CHIRP
 from tests.io.test_mmwave_studio import SETUP
+from tests.motion.mocap.test_c3d import markers, write_c3d
 
 WIDTH, HEIGHT = 64, 48
 STUDIO = {"mmWaveDevices": [{"rfConfig": SETUP, "rawDataCaptureConfig": {"rlDevDataFmtCfg_t": {"iqSwapSel": 0}}}]}
@@ -83,6 +88,8 @@ def _radars() -> list[Reader]:
         load_firmware(str(path))
         return load_radar(str(path))
 
+    genesis = rf_genesis_settings(PRESETS["mmmesh"])
+
     return [
         Reader(
             "radar.json",
@@ -92,6 +99,14 @@ def _radars() -> list[Reader]:
             _wrong_radar,
         ),
         Reader("TI cfg", ".cfg", lambda rng: _text_of(cfg, rng), ti, _wrong_radar),
+        Reader(
+            "Infineon config",
+            ".json",
+            lambda rng: _json_of({"device_config": {"fmcw_single_shape": CHIRP}}, rng),
+            studio,
+            _wrong_radar,
+        ),
+        Reader("RF-Genesis config", ".json", lambda rng: _json_of(genesis, rng), studio, _wrong_radar),
         Reader("mmWave Studio json", ".mmwave.json", lambda rng: _json_of(STUDIO, rng), studio, _wrong_radar),
     ]
 
@@ -209,6 +224,8 @@ def _recordings(folder: Path, config: Any, adc: AdcCube) -> list[Reader]:
     packets = captures.packets_of(folder, adc)
     samples = adc.samples[:1].transpose(0, 1, 2, 3, 4)
     axes = "frame,loop,tx,rx,sample"
+    headed = b"".join(payload for _, payload in packets)
+    mapping = ArrayMapping(path=folder / "map.toml", axes=axes)
 
     def pcap(rng: random.Random) -> bytes:
         if rng.random() < 0.5 or isinstance(rng, m.Undamaged):
@@ -238,6 +255,20 @@ def _recordings(folder: Path, config: Any, adc: AdcCube) -> list[Reader]:
             ".bin",
             lambda rng: m.mutated_bytes(raw, rng),
             lambda path: read_bin(path, config).samples,
+            wrong_numbers,
+        ),
+        Reader(
+            "packets with headers",
+            ".bin",
+            lambda rng: m.mutated_bytes(headed, rng),
+            lambda path: read_recording(path, config).cube.values,
+            wrong_numbers,
+        ),
+        Reader(
+            "mapped npy",
+            ".npy",
+            lambda rng: m.mutated_npy(samples, rng),
+            lambda path: read_mapped(path, mapping, config).samples,
             wrong_numbers,
         ),
         Reader(
@@ -343,12 +374,15 @@ def _others(folder: Path) -> list[Reader]:
     write_tensors(folder / "t.safetensors", {"a": torch.arange(12.0).reshape(3, 4), "b": torch.ones(5)}, {"card": "{}"})
     tensors = (folder / "t.safetensors").read_bytes()
     bvh = _bvh()
+    write_c3d(folder / "walk.c3d", markers())
+    c3d = (folder / "walk.c3d").read_bytes()
     toml = 'frames = 20\nseed = 3\ntext = ["a person waves"]\nat = [0.5, 2.0]\nradar = "awr1843"\n'
 
     def motion(fps: float | None) -> Callable[[Path], Any]:
         return lambda path: read_motion(path, fps=fps).joints_m
 
     return [
+        Reader("motion c3d", ".c3d", lambda rng: m.mutated_bytes(c3d, rng), motion(None), wrong_numbers),
         Reader("motion npy", ".npy", lambda rng: m.mutated_npy(rest, rng), motion(20.0), wrong_numbers),
         Reader(
             "motion npz",

@@ -1,7 +1,9 @@
 """Radars by name or file, and their table."""
 
+import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from mmweaver.core.boards import AWR1843, PRESETS
@@ -37,3 +39,21 @@ def test_the_table_of_the_papers_radar():
         "64 range x 32 Doppler x 12 antennas", "elevation                  yes", "10.00 per second",
     ):  # fmt: skip
         assert fact in text
+
+
+def test_a_configuration_of_rf_genesis_that_we_write_is_the_same_radar(tmp_path: Path):
+    from mmweaver.core.boards import MMMESH
+    from mmweaver.datasets.tensor_layouts import rf_genesis_settings
+
+    (tmp_path / "TI1843_config.json").write_text(json.dumps(rf_genesis_settings(MMMESH)))
+    read = load_radar(str(tmp_path / "TI1843_config.json"))
+    for name in ("start_frequency_hz", "chirp_slope_hz_per_s", "num_samples", "sample_rate_hz", "num_loops"):
+        assert getattr(read, name) == pytest.approx(getattr(MMMESH, name)), name
+    fired = np.array(MMMESH.tx_position_m)[list(MMMESH.tx_order)]
+    assert np.allclose(np.array(read.tx_position_m), fired, atol=2e-5)
+
+
+def test_json_of_something_else_is_named(tmp_path: Path):
+    (tmp_path / "package.json").write_text('{"name": "x"}')
+    with pytest.raises(InputError, match=r"no radar that is known.*Infineon"):
+        load_radar(str(tmp_path / "package.json"))

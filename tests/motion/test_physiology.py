@@ -8,8 +8,8 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import Breathing
 from mmweaver.core.skeleton import joint
-from mmweaver.motion.physiology import STILL, Physiology, PhysiologySettings, Waves, breathing_rate_of
-from mmweaver.propagation.body_model import ScatteringBody
+from mmweaver.motion.physiology import STILL, Physiology, PhysiologySettings, Waves, breathing_rate_of, cover_of
+from mmweaver.propagation.body_model import ScatteringBody, body_of
 from tests.rooms import standing_person
 
 STEP_S = 0.04
@@ -61,7 +61,7 @@ def test_the_trunk_accelerates_over_the_hips_as_published():
     """Angular acceleration over the hips is 3.15 (deviation 1.24) times that over the ankles (Aramaki et al. 2001)."""
     hips, ankles = [], []
     for subject in range(8):
-        place = moved(subject, 0, PhysiologySettings(tremor_m=0.0))[..., 1] + JOINTS[..., 1]
+        place = moved(subject, 0, PhysiologySettings(tremor_m=0.0, breath_m=0.0, heart_m=0.0))[..., 1] + JOINTS[..., 1]
         pelvis, chest, foot = (place[:, joint(name)] for name in ("pelvis", "spine3", "left_foot"))
         height = {name: JOINTS[0, joint(name), 2] for name in ("pelvis", "spine3", "left_ankle")}
         leg_rad = (pelvis - foot) / (height["pelvis"] - height["left_ankle"])
@@ -74,9 +74,11 @@ def test_the_trunk_accelerates_over_the_hips_as_published():
 def test_feet_stay_and_hands_tremble():
     wander = moved(0, 0)
     assert rms(wander[:, joint("left_foot")]) < 0.2e-3  # it lies a little over the lower one
-    alone = moved(0, 0, PhysiologySettings(sway_m=0.0))
+    alone = moved(0, 0, PhysiologySettings(sway_m=0.0, breath_m=0.0))
     assert rms(alone[:, joint("left_wrist")]) > rms(alone[:, joint("left_shoulder")])
-    trembling = moved(0, 0, PhysiologySettings(sway_m=0.0, waver_m=0.0))[:, joint("left_wrist"), 0]
+    trembling = moved(0, 0, PhysiologySettings(sway_m=0.0, waver_m=0.0, breath_m=0.0, heart_m=0.0))[
+        :, joint("left_wrist"), 0
+    ]
     power = np.abs(np.fft.rfft(trembling)) ** 2
     frequency_hz = np.fft.rfftfreq(len(trembling), STEP_S)
     assert power[(frequency_hz > 7.9) & (frequency_hz < 12.1)].sum() > 0.95 * power.sum()
@@ -173,3 +175,11 @@ def test_waves_have_the_rms_asked_for():
     rng = np.random.Generator(np.random.SFC64(0))
     waves = Waves(rng, (40,), 0.2, 2.0, 1.0).at(np.arange(0, 600, 0.05))
     assert np.sqrt((waves**2).mean()) == pytest.approx(1.0, rel=0.05)
+
+
+def test_a_blanket_is_taken_out_of_the_sentence_and_weakens_the_body():
+    assert cover_of("a person lies on the floor under a thick duvet") == ("a person lies on the floor", 5.0)
+    assert cover_of("a person crawls under a table") == ("a person crawls under a table", 0.0)
+    pose = replace(standing_person((0.0, 2.0, -1.2)), cover_db=3.0)
+    bare, covered = (body_of(one).brightness for one in (replace(pose, cover_db=0.0), pose))
+    assert covered == pytest.approx(bare / 10**0.3)

@@ -158,3 +158,18 @@ def test_the_first_chirp_of_a_frame_differs():
     ratio = (first * later.conj()).sum() / (np.abs(later) ** 2).sum()
     assert ratio == pytest.approx(1.005 * np.exp(2e-3j), abs=1e-5)
     np.testing.assert_array_equal(adc.samples[0, 0, 1], adc.samples[0, 5, 1])
+
+
+def test_an_unbalanced_mixer_shows_every_echo_at_the_negative_beat():
+    """1 dB and 5 degrees: an image of |1 - g exp(j phi)| / 2, -22.5 dB."""
+    board = Board(iq_gain_db=1.0, iq_phase_deg=5.0)
+    scene = scene_of((back_wall(y_m=2.5, material="metal"),))
+    images = []
+    for one in (None, board):
+        samples = Simulator(scene, AWR1843, IDEAL, board=one).run((), num_frames=1, seed=0).adc.samples[0]
+        power = (np.abs(np.fft.fft(samples * np.hanning(256), axis=-1)) ** 2).mean(axis=(0, 1, 2))
+        peak = int(power.argmax())
+        images.append(10 * np.log10(power[-peak] / power[peak]))
+    expected = 20 * np.log10(abs(1 - 10 ** (1 / 20) * np.exp(1j * np.radians(5))) / 2)
+    assert images[0] < expected - 15
+    assert images[1] == pytest.approx(expected, abs=0.3)

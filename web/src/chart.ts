@@ -29,9 +29,11 @@ export abstract class Chart {
   marks: Mark[] = [];
   isFan = false;
   private base = element("canvas", { "aria-hidden": "true" });
+  private drawnOver = "";
   private readout = element("output", { class: "readout" });
   private whole: { x: [number, number]; y: [number, number] };
-  protected isDirty = true;
+  protected isDirty = true; // all of it; what lies within the axes alone: isStale
+  protected isStale = false;
 
   constructor(public title: string, public x: Axis, public y: Axis) {
     this.whole = { x: [x.from, x.to], y: [y.from, y.to] };
@@ -64,7 +66,7 @@ export abstract class Chart {
     this.drawOver();
   }
   draw(): void {
-    if (this.isDirty) this.drawBase();
+    if (this.isDirty || this.isStale) this.drawBase();
     this.drawOver();
   }
   redraw(): void { this.isDirty = true; this.draw(); }
@@ -127,9 +129,10 @@ export abstract class Chart {
     return g;
   }
   private drawBase(): void {
+    if (this.isStale && !this.isDirty) { this.isStale = false; this.drawContent(this.base.getContext("2d")!); return; }
     const g = this.sized(this.base);
     if (!g) return;
-    this.isDirty = false;
+    this.isDirty = this.isStale = false;
     this.scale = parseFloat(getComputedStyle(this.root).fontSize) / 14 || 1;
     this.drawOn(g);
   }
@@ -140,9 +143,7 @@ export abstract class Chart {
     g.imageSmoothingEnabled = false;
     g.font = `600 ${12 * k}px ${FONT}`; g.fillStyle = ink; g.textAlign = "left";
     g.fillText(fitted(g, this.title, width - 24 * k), 12 * k, 15 * k);
-    g.save(); g.beginPath(); g.rect(box.left, box.top, box.width, box.height); g.clip();
-    this.paint(g, px, py);
-    g.restore();
+    this.drawContent(g);
     g.font = `${11 * k}px ${FONT}`; g.fillStyle = faint; g.textAlign = "center";
     for (const t of ticks(this.x.from, this.x.to, Math.max(2, box.width / (55 * k)))) { g.fillRect(px(t), box.top + box.height, 1, 3); g.fillText(tidy(t), clamp(px(t), 12 * k, width - 12 * k), box.top + box.height + 13 * k); }
     g.textAlign = "right";
@@ -151,7 +152,18 @@ export abstract class Chart {
     g.fillText(this.x.label, box.left + box.width / 2, Math.min(box.top + box.height + 26 * k, height - 4 * k));
     g.save(); g.translate(Math.max(12 * k, box.left - 38 * k), box.top + box.height / 2); g.rotate(-Math.PI / 2); g.fillText(this.y.label, 0, 0); g.restore();
   }
+  private drawContent(g: CanvasRenderingContext2D): void {
+    const box = this.box();
+    g.imageSmoothingEnabled = false;
+    g.save(); g.beginPath(); g.rect(box.left, box.top, box.width, box.height); g.clip();
+    g.fillStyle = themeColour(this.canvas, "--panel") || "#fff"; g.fillRect(box.left, box.top, box.width, box.height);
+    this.paint(g, this.px, this.py);
+    g.restore();
+  }
   protected drawOver(): void {
+    const key = JSON.stringify([this.marks, this.cursor, this.isDirty, this.canvas.clientWidth, this.canvas.clientHeight, this.x.from, this.x.to, this.y.from, this.y.to]);
+    if (key === this.drawnOver) return;
+    this.drawnOver = key;
     const g = this.sized(this.canvas);
     if (!g) return;
     if (this.isDirty) this.drawBase();
@@ -199,7 +211,7 @@ export class CurveChart extends Chart {
   private curves: Curve[] = [];
   private unit = "";
   private span: [number, number] = [0, 1];
-  show(curves: Curve[], span: [number, number], unit: string): void { this.curves = curves; this.span = span; this.unit = unit; this.redraw(); if (this.cursor) this.point(this.cursor); }
+  show(curves: Curve[], span: [number, number], unit: string): void { this.curves = curves; this.span = span; this.unit = unit; this.isStale = true; this.draw(); if (this.cursor) this.point(this.cursor); }
   protected step(): [number, number] { const count = this.curves[0]?.values.length ?? 1; return [(this.span[1] - this.span[0]) / count, (this.y.to - this.y.from) / 20]; }
   protected valueText(cursor: Cursor): string {
     const { x } = this.place(cursor), values = this.curves[0]?.values;

@@ -5,16 +5,16 @@ import type { Sequence } from "./sequence";
 
 interface Clause { clause: string; status: string; how?: string; shown?: string; asked?: unknown; measured?: unknown; facts?: Record<string, unknown> }
 const words = (value: unknown): string =>
-  value === null || value === undefined || value === "" ? "" : typeof value === "object" ? Object.entries(value).map(([name, one]) => `${name.replace(/_/g, " ")} ${words(one)}`).join(", ") : typeof value === "number" ? String(Math.round(value * 100) / 100) : String(value);
+  value === null || value === undefined || value === "" ? "" : Array.isArray(value) ? value.map(words).join("; ") : typeof value === "object" ? Object.entries(value).map(([name, one]) => `${name.replace(/_/g, " ")} ${words(one)}`).join(", ") : typeof value === "number" ? String(Math.round(value * 100) / 100) : String(value);
 
 /** One chip for each clause. A clause that was not done as asked says what is shown instead. */
-export function motionLine(meta: any): HTMLElement[] {
+export function motionLine(meta: any, mark: ((kind: string) => void) | null = null): HTMLElement[] {
   const people: any[] = meta.people ?? [meta];
   return people.flatMap((one, person) => ((one.clauses ?? []) as Clause[]).map((clause) => {
     const [sign, status] = STATUS[clause.status] ?? ["•", clause.status], isDone = clause.status === "done", asked = words(clause.asked), shown = words(clause.shown) || words(clause.measured);
-    const why = isDone ? "" : inPageWords(clause.how ?? "").replace(/^is shown as /, "shown as "), told = [asked && `asked ${asked}`, why || (shown && `shown: ${shown}`)].filter(Boolean).join("; ");
+    const why = isDone ? "" : inPageWords(clause.how ?? "").replace(/^'.*?':\s*/, "").replace(/^is shown as /, "shown as "), kind = /no (\w+) is in the picture/.exec(clause.how ?? "")?.[1], told = [asked && `asked ${asked}`, why || (shown && `shown: ${shown}`)].filter(Boolean).join("; ");
     return element("li", { class: `clause ${clause.status.replace(" ", "-")}`, title: [status, asked && `asked: ${asked}`, shown && `shown: ${shown}`, words(clause.facts)].filter(Boolean).join("\n") },
-      element("span", { class: "sign", "aria-hidden": "true" }, sign), element("span", { class: "hidden" }, `${status}: `), people.length > 1 ? `${person + 1}: ${clause.clause}` : clause.clause, ...(isDone || !told ? [] : [element("em", {}, ` ${told}`)]));
+      element("span", { class: "sign", "aria-hidden": "true" }, sign), element("span", { class: "hidden" }, `${status}: `), people.length > 1 ? `${person + 1}: ${clause.clause}` : clause.clause, ...(isDone || !told ? [] : [element("em", {}, ` ${told}`)]), ...(kind && mark ? [element("button", { class: "small", click: () => mark(kind) }, `show where the ${kind} is`)] : []));
   }));
 }
 

@@ -83,7 +83,7 @@ export class MapPanel extends Chart {
     }
     return new Uint32Array(this.image!.data.buffer);
   }
-  private finish(): void { this.raster.getContext("2d")!.putImageData(this.image!, 0, 0); this.isDirty = true; this.draw(); if (this.cursor) this.point(this.cursor); }
+  private finish(): void { this.raster.getContext("2d")!.putImageData(this.image!, 0, 0); this.isStale = true; this.draw(); if (this.cursor) this.point(this.cursor); }
 }
 
 function flatPlaces(picture: Picture, rows: number, columns: number) {

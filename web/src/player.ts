@@ -33,6 +33,8 @@ export class Player {
   readonly settings = remembered("mmweaver.view", { speed: 1, loop: true, moving: false, weakest: 0, layers: ["room", "points", "trail", "view", "grid"] as Layer[], maps: MAPS.map((one) => one.name) as MapName[], rays: false });
   /** Traces the paths of a frame, where there is somebody who can. */
   tracer: ((sequence: Sequence, frame: number) => Promise<Rays | null>) | null = null;
+  /** Lets a person show where a thing is that the photo does not show, where that is possible. */
+  mark: ((kind: string) => void) | null = null;
   sequence: Sequence | null = null;
   other: Sequence | null = null;
   room: RoomView | null = null;
@@ -83,13 +85,16 @@ export class Player {
     this.scene.onBody = (inside) => { if (inside !== this.isInside) { this.isInside = inside; this.draw(); } };
     new ResizeObserver(() => this.draw()).observe(this.root);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.themeChanged());
-    const tick = (now: number) => {
-      if (this.playing && this.lead) this.advance((now - this.last) / 1000);
-      this.last = now;
-      requestAnimationFrame(tick);
-    };
-    requestAnimationFrame(tick);
   }
+
+  /** Runs while it plays; in software once for each frame, since a picture of the page costs the processor as much as one of the room. */
+  private tick = (): void => {
+    if (!this.playing) return;
+    const now = performance.now();
+    if (this.lead) this.advance((now - this.last) / 1000);
+    this.last = now;
+    if (this.scene.isSoftware && this.lead) setTimeout(() => requestAnimationFrame(this.tick), Math.max(4, (1 - this.share) * this.lead.periodS * 1000 / this.settings.value.speed - 8)); else requestAnimationFrame(this.tick);
+  };
 
   private advance(seconds: number): void {
     const { lead } = this, { speed, loop } = this.settings.value;
@@ -134,7 +139,7 @@ export class Player {
     this.scene.setSequence(sequence, other);
     this.root.classList.toggle("comparing", other !== null);
     if (!isBuilt) this.build();
-    this.facts.replaceChildren(...motionLine((other ?? sequence).header.meta), ...[sequence, ...(other ? [other] : [])].flatMap(warnings), ...noiseChip(other ?? sequence));
+    this.facts.replaceChildren(...motionLine((other ?? sequence).header.meta, this.mark), ...[sequence, ...(other ? [other] : [])].flatMap(warnings), ...noiseChip(other ?? sequence));
     this.showNames();
     this.showRays();
     this.draw();
@@ -162,7 +167,7 @@ export class Player {
   }
   step(by: number): void { this.pause(); this.seek(this.frame + by); }
   toggle(): void { if (this.playing) this.pause(); else this.play(); }
-  play(): void { this.playing = true; this.playButton.textContent = "❚❚"; this.playButton.setAttribute("aria-label", "Pause"); }
+  play(): void { if (this.playing) return; this.last = performance.now(); requestAnimationFrame(this.tick); this.playing = true; this.playButton.textContent = "❚❚"; this.playButton.setAttribute("aria-label", "Pause"); }
   pause(): void { this.playing = false; this.playButton.textContent = "▶"; this.playButton.setAttribute("aria-label", "Play"); }
   setLoop(on: boolean): void { this.settings.set({ loop: on }); this.loopButton.setAttribute("aria-pressed", String(on)); }
   setMoving(on: boolean): void { this.settings.set({ moving: on }); this.movingBox.checked = on; this.draw(); }

@@ -24,7 +24,7 @@ export class SceneView {
   drawing = false;
   draws = 0; // pictures so far, for tests and benchmarks
   readonly isSoftware: boolean;
-  private renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+  private renderer: THREE.WebGLRenderer;
   private scene = new THREE.Scene();
   private still = new THREE.Scene();
   private picture = new StillPicture();
@@ -43,8 +43,9 @@ export class SceneView {
   private pending = false;
 
   constructor() {
-    const canvas = this.renderer.domElement, g = this.renderer.getContext(), info = g.getExtension("WEBGL_debug_renderer_info");
-    this.isSoftware = /swiftshader|llvmpipe|software/i.test(String(info ? g.getParameter(info.UNMASKED_RENDERER_WEBGL) : ""));
+    this.isSoftware = isSoftware();
+    this.renderer = new THREE.WebGLRenderer({ antialias: !this.isSoftware, alpha: false, stencil: false });
+    const canvas = this.renderer.domElement;
     canvas.setAttribute("role", "img"); canvas.setAttribute("tabindex", "0");
     canvas.setAttribute("aria-label", "The room in 3D with people and radar points. Click the floor, or press Shift and an arrow key, to choose where the person starts; drag to turn, scroll to zoom.");
     this.root.append(canvas);
@@ -291,6 +292,14 @@ export class SceneView {
     this.draws++;
   }
   themeChanged(): void { this.picture.isOld = true; if (this.sequence) { this.put("grid", rings(this.sequence, this.floorZ)); } this.render(); }
+}
+
+/** Whether the processor draws: then every pixel counts, and what a screen would smooth is left as it is. */
+function isSoftware(): boolean {
+  const g = document.createElement("canvas").getContext("webgl"), info = g?.getExtension("WEBGL_debug_renderer_info");
+  const is = /swiftshader|llvmpipe|software/i.test(String(info ? g!.getParameter(info.UNMASKED_RENDERER_WEBGL) : ""));
+  g?.getExtension("WEBGL_lose_context")?.loseContext();
+  return is;
 }
 
 /** The radar points of a sequence in one buffer, of which a frame's are drawn: moving ones, and static ones where wanted. */

@@ -28,8 +28,8 @@ export class Sequence {
     return [data[i], data[i + 1], data[i + 2]];
   }
 
-  /** Half a Doppler bin: what moves more slowly is static. */
-  get slowestMps(): number { const [low, high] = this.header.velocity_mps; return (high - low) / this.arrays.range_doppler.shape[2] / 2; }
+  /** Three quarters of a Doppler bin: slower points are static echoes in a neighbouring bin, as in mmweaver.viz.figure_data. */
+  get slowestMps(): number { const [low, high] = this.header.velocity_mps; return (0.75 * (high - low)) / this.arrays.range_doppler.shape[2]; }
 
   /** How long its time axis is: that of a stream does not grow with it. */
   get spanS(): number { return Math.max(this.windowS, this.durationS); }

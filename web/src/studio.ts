@@ -62,6 +62,7 @@ export class Studio {
     scene.onNudge = (right, ahead) => this.nudge(right, ahead);
     scene.onCorner = () => { const { ask, drawing } = this.state, at = ask.people[0].at; if (drawing && at) this.dispatch({ type: "corner", at }); };
     this.player.tracer = async (sequence, frame) => raysOf(await this.api.packed(`api/rays/${encodeURIComponent(sequence.header.result)}?frame=${frame}`));
+    this.player.mark = (kind) => this.dispatch({ type: "mark", kind });
     this.takeDrops();
     addEventListener("popstate", () => { const ask = this.askOfAddress(); if (ask && this.root.dataset.state === "ready") this.dispatch({ type: "restore", ask }); });
     document.addEventListener("keydown", (event) => this.key(event));
@@ -170,12 +171,12 @@ export class Studio {
       if (this.socket !== socket) return;
       const share = (performance.now() - begun) / lasts, frame = first + Math.min(Math.floor(share * chunk.frames), chunk.frames - 1);
       if (frame !== at) { at = frame; this.player.seek(frame); }
-      if (share < 1) { requestAnimationFrame(step); return; }
+      if (share < 1) { setTimeout(step, Math.max(4, ((frame - first + 1) / chunk.frames) * lasts - (performance.now() - begun))); return; }
       this.waiting.shift();
       if (socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify({ ack: chunk.header.live.first_frame }));
       this.showChunk(job, socket);
     };
-    requestAnimationFrame(step);
+    step();
   }
 
   // what is shown ---------------------------------------------------------------------------------------------------

@@ -12,6 +12,7 @@ from mmweaver.core.options import MISSING, option, options
 
 if TYPE_CHECKING:
     from mmweaver.core.radar_config import RadarConfig
+    from mmweaver.datasets.dataset_plan import DatasetPlan
 
 MAX_WORKERS = 1024
 EXAMPLES = """examples:
@@ -22,6 +23,7 @@ EXAMPLES = """examples:
   mmweaver dataset data/ --workers 4            # after a kill: resumes where it stopped
   mmweaver dataset data/ --repair               # makes rooms that mmweaver verify finds damaged anew
   mmweaver dataset data/ --dry-run              # what it would hold and cost
+  mmweaver dataset data/ --layouts 7000 --packed --part 3/100    # the third of a hundred machines, one file per room
   mmweaver dataset shared/data/ --ray-address auto --workers 64     # on a Ray cluster that sees the folder
 """
 
@@ -74,7 +76,21 @@ class RoomSet:
         " micro-motion each time, without a ray caster, on a GPU if there is one",
         default=False,
     )
-    workers: int = option("parallel processes", "N", default=1, group="running", is_setting=False)
+    packed: bool = option(
+        "write each room as one uncompressed zip, which Zarr reads, instead of a folder of some 30 files",
+        default=False,
+    )
+    plan_version: int = option(
+        "4, or 3 for the seeds of sets made by mmweaver 0.3; a set that is there keeps its own", "N", default=4
+    )
+    part: str | None = option(
+        "make only the rooms of this machine, for example 3/100 for the third of a hundred: all may run at once, each"
+        " on a range of rooms, and any of them again after a kill",
+        "I/N",
+        group="running",
+        is_setting=False,
+    )
+    workers: int = option("parallel processes", "N", default=1, is_setting=False)
     ray_address: str | None = option("run on this Ray cluster; 'local' starts one", "ADDRESS", is_setting=False)
     repair: bool = option(
         "check the rooms that are there against their checksums first, and make damaged ones anew", default=False
@@ -131,9 +147,8 @@ def _run_rooms(asked: Options) -> int:
 
     from mmweaver.core.output_checks import check_output_folder
     from mmweaver.datasets.dataset_cost import check_for_space, estimate_cost
-    from mmweaver.datasets.dataset_plan import MOST, DatasetPlan
-    from mmweaver.datasets.dataset_store import PLAN_FILE
-    from mmweaver.datasets.generate_rooms import check_packages, generate_dataset
+    from mmweaver.datasets.dataset_folder import PLAN_FILE
+    from mmweaver.datasets.dataset_plan import MOST, DatasetPlan, begun_version
     from mmweaver.scene.procedural.arrangement import KINDS
     from mmweaver.scene.procedural.lighting import LIGHTINGS
 
@@ -155,16 +170,21 @@ def _run_rooms(asked: Options) -> int:
         seed=asked.seed,
         geometry_only=asked.geometry_only,
         board=str(Path(board).absolute()) if Path(board).is_file() else board,
+        packed=asked.packed,
+        plan_version=begun_version(out) or asked.plan_version,
     )
-    cost = estimate_cost(plan, config, out)
+    numbers = _part(asked.part, plan)
+    cost = estimate_cost(plan, config, out, numbers)
     if asked.dry_run:
         return asked.report(asdict(cost), cost.summary(workers))
+    from mmweaver.datasets.generate_rooms import check_packages, generate_dataset
+
     check_packages(asked.ray_address)
     check_output_folder(out, overwrite=True, files=[PLAN_FILE])
     check_for_space(cost, out)
     if not (asked.quiet or asked.json):
         print(cost.summary(workers), file=sys.stderr)
-    total = len(plan.kinds) * plan.num_layouts
+    total = len(numbers)
     try:
         with tqdm(total=total, unit="room", disable=asked.quiet or None) as bar:
             reports = generate_dataset(
@@ -174,10 +194,11 @@ def _run_rooms(asked: Options) -> int:
                 workers=workers,
                 ray_address=asked.ray_address,
                 repair=asked.repair,
+                numbers=numbers,
                 listener=lambda report: bar.update(),
             )
     except KeyboardInterrupt:
-        left = estimate_cost(plan, config, out).rooms
+        left = estimate_cost(plan, config, out, numbers).rooms
         kept = f"{total - left} of {total} rooms are finished in {out}; the same command makes the rest"
         raise KeyboardInterrupt(kept if out.exists() else "") from None
     write_request(out, asked)
@@ -190,3 +211,11 @@ def _run_rooms(asked: Options) -> int:
     }
     rooms = f"{len(reports)} new rooms ({total - len(reports)} were there)"
     return asked.report(summary, f"{summary['sequences_made']} sequences in {rooms} in {out}")
+
+
+def _part(words: str | None, plan: "DatasetPlan") -> range:
+    """Rooms of this machine. Raises InputError if the option is not like 3/100."""
+    first, slash, last = (words or "1/1").partition("/")
+    if not (slash and first.isdecimal() and last.isdecimal() and 1 <= int(first) <= int(last)):
+        raise InputError(f"--part must be like 3/100, the third of a hundred parts, not {words!r}")
+    return plan.part(int(first), int(last))

@@ -10,10 +10,12 @@ from mmweaver.core.options import MISSING, option, options
 if TYPE_CHECKING:
     from mmweaver.core.records import PoseSequence
 
-SUFFIXES = (".npz", ".png", ".pdf", ".svg")
+AMASS = ".amass.npz"
+SUFFIXES = (".npz", ".bvh", ".npy", ".png", ".pdf", ".svg")
 EXAMPLES = """examples:
   mmweaver motion "a person walks to the left, then waves"
   mmweaver motion "a person falls, then gets up" --seconds 8 --out fall.npz --out fall.png
+  mmweaver motion "a person waves" --out wave.bvh --out wave.amass.npz
 """
 
 
@@ -27,9 +29,10 @@ class Options(Printed):
     height: float | None = option("the person's height in metres (default: by the seed)", "M")
     subject: int | None = option("the person, 0 to 9999 (default: by the seed)", "N")
     out: list[Path] | None = option(
-        "write 22 joints at 120 Hz, as pose.npz holds them, or draw the body at ten instants (.png, .pdf, .svg); once"
-        " more for both",
-        "NPZ|PNG",
+        "write 22 joints at 120 Hz, as pose.npz holds them, as BVH (.bvh), as SMPL poses of AMASS (.amass.npz) or as"
+        " HumanML3D's features at 20 Hz (.npy); or draw the body at ten instants (.png, .pdf, .svg); once more for"
+        " several",
+        "NPZ|BVH|NPY|PNG",
     )
 
 
@@ -77,13 +80,20 @@ def _write_files(asked: Options, pose: "PoseSequence") -> None:
     """Writes joints and picture, both or neither."""
     from mmweaver.core.atomic_files import atomic_files
     from mmweaver.io.npz_files import write_pose_npz
+    from mmweaver.motion.mocap.write_motion import write_amass, write_bvh, write_humanml3d
     from mmweaver.viz.motion_strip import draw_strip
 
     files = asked.out or []
     with atomic_files(*files) as temporaries:
         for file, temporary in zip(files, temporaries, strict=True):
-            if file.suffix == ".npz":
+            if file.name.endswith(AMASS):
+                write_amass(temporary, pose)
+            elif file.suffix == ".npz":
                 write_pose_npz(temporary, pose)
+            elif file.suffix == ".bvh":
+                write_bvh(temporary, pose)
+            elif file.suffix == ".npy":
+                write_humanml3d(temporary, pose)
             else:
                 draw_strip(pose, temporary, title=asked.text)
 
@@ -94,5 +104,7 @@ def _check_files(asked: Options) -> None:
 
     for file in asked.out or ():
         if file.suffix not in SUFFIXES:
-            raise InputError(f"{file} does not end in {', '.join(SUFFIXES)}; joints are .npz, pictures the others")
+            raise InputError(
+                f"{file} does not end in {', '.join(SUFFIXES)}; joints are .npz, .bvh or .npy, pictures the others"
+            )
         check_output_file(file, overwrite=True)

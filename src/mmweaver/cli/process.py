@@ -1,5 +1,7 @@
 """mmweaver process: a real recording through the same processing, into the same files and pictures."""
 
+import shutil
+from functools import partial
 from pathlib import Path
 from typing import ClassVar, Literal
 
@@ -52,6 +54,9 @@ class Options(Samples, Ranges, PointChoice, Written):
 def run(asked: Options) -> int:
     """Processes the recording and writes the results.
 
+    A long recording is processed in blocks in the folder .OUT.process, which stays if the run is interrupted: the same
+    command then continues.
+
     Raises:
         InputError: For a recording or options that cannot be used.
     """
@@ -64,7 +69,8 @@ def run(asked: Options) -> int:
     from mmweaver.io.result_folder import FILES
 
     check_output_folder(asked.out, overwrite=asked.overwrite, files=FILES, inputs=[asked.file])
-    with StageBar(NUM_STAGES, quiet=asked.quiet or asked.verbose) as bar:
+    work = asked.out.absolute().with_name(f".{asked.out.absolute().name}.process")
+    with StageBar(NUM_STAGES, quiet=asked.quiet or asked.verbose, patience_s=0.5) as bar:
         from mmweaver.core.stages import Stages
         from mmweaver.recordings.processing import process_recording
 
@@ -79,8 +85,11 @@ def run(asked: Options) -> int:
             analyse=not asked.no_analysis,
             strict=asked.strict,
             stages=Stages(bar),
+            work=work,
+            progress=partial(bar.progress, "frames"),
             **asked.reading(),
         )
         written = {REQUEST_FILE: request_toml(asked)}
         meta = recording.save(asked.out, overwrite=asked.overwrite, extra=written, pictures=not asked.no_pictures)
+    shutil.rmtree(work, ignore_errors=True)
     return asked.report(machine_summary(asked.out, meta), *summary_lines(asked.out, meta, verbose=asked.verbose))

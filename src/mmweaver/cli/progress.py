@@ -31,7 +31,8 @@ PATIENCE_S = 2.0
 class StageBar:
     """Shows the current stage; silent if stderr is not a terminal, or `quiet` is set."""
 
-    def __init__(self, num_stages: int, *, quiet: bool = False):
+    def __init__(self, num_stages: int, *, quiet: bool = False, patience_s: float = PATIENCE_S):
+        self._patience_s = patience_s
         self._num_stages, self._silent = num_stages, quiet or not sys.stderr.isatty()
         self._bar: tqdm | None = None
 
@@ -43,7 +44,9 @@ class StageBar:
             from tqdm import tqdm
 
             shape = "{desc:<28} {bar:24} {n_fmt}/{total_fmt} {elapsed}"
-            self._bar = tqdm(total=self._num_stages, file=sys.stderr, leave=False, delay=PATIENCE_S, bar_format=shape)
+            self._bar = tqdm(
+                total=self._num_stages, file=sys.stderr, leave=False, delay=self._patience_s, bar_format=shape
+            )
             self._bar.set_description_str(stage, refresh=False)
         else:
             self._bar.set_description_str(stage, refresh=False)

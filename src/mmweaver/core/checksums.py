@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mmweaver.core.errors import InputError, one_line
-from mmweaver.core.safe_files.regular_files import foreign_errors, open_regular, read_bytes
+from mmweaver.core.safe_files.packed_folder import PackedPath
+from mmweaver.core.safe_files.regular_files import Place, foreign_errors, open_regular, read_bytes
 
 SUMS_FILE = "SHA256SUMS"
 FIRST_LINE = "# mmweaver; check with: mmweaver verify DIR, or sha256sum -c SHA256SUMS"
@@ -25,7 +26,7 @@ _checked: dict[str, tuple[int, int, int]] = {}  # by path and digest: inode, siz
 class Damage:
     """A file whose content does not match its checksum."""
 
-    file: Path
+    file: Place
     what: str  # "is missing" or "is not as it was written"
 
     def __str__(self) -> str:
@@ -76,7 +77,7 @@ def sums_text(sums: dict[str, str]) -> str:
     return "".join(f"{line}\n" for line in (FIRST_LINE, *(f"{digest}  {name}" for name, digest in sums.items())))
 
 
-def read_sums(folder: Path) -> dict[str, str] | None:
+def read_sums(folder: Place) -> dict[str, str] | None:
     """Reads the checksums of a folder.
 
     Args:
@@ -116,7 +117,7 @@ def read_sums(folder: Path) -> dict[str, str] | None:
     return sums
 
 
-def _damaged(file: Path) -> dict[str, str]:
+def _damaged(file: Place) -> dict[str, str]:
     raise InputError(f"{file} is damaged; find out what else is with: mmweaver verify {file.parent}")
 
 
@@ -143,7 +144,7 @@ def check_file(path: Path, *, folder: Path | None = None) -> None:
         )
 
 
-def damage_of_file(folder: Path, name: str, expected: str, *, use_cache: bool = True) -> Damage | None:
+def damage_of_file(folder: Place, name: str, expected: str, *, use_cache: bool = True) -> Damage | None:
     """Compares a file with its checksum.
 
     Args:
@@ -160,7 +161,7 @@ def damage_of_file(folder: Path, name: str, expected: str, *, use_cache: bool = 
         if not file.exists():
             return Damage(file=file, what="is missing")
         with open_regular(file) as stream:
-            about = os.fstat(stream.fileno())
+            about = file.file.stat() if isinstance(file, PackedPath) else os.fstat(stream.fileno())
             state = (about.st_ino, about.st_size, about.st_mtime_ns)
             if use_cache and _checked.get(f"{file}\n{expected}") == state:
                 return None
@@ -174,7 +175,7 @@ def damage_of_file(folder: Path, name: str, expected: str, *, use_cache: bool = 
     return Damage(file=file, what="is not as it was written")
 
 
-def damages(folder: Path) -> list[Damage]:
+def damages(folder: Place) -> list[Damage]:
     """Checks all files listed in a folder's SHA256SUMS.
 
     Args:

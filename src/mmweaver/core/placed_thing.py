@@ -4,6 +4,14 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+# Kinds of furniture that can be put into a room (`scene.furnished`).
+FURNISHABLE = frozenset(
+    {
+        *("armchair", "bed", "bench", "cabinet", "chair", "couch", "counter", "desk", "door", "fridge", "lamp"),
+        *("plant", "shelf", "sink", "sofa", "stool", "stove", "table", "tv", "wardrobe", "window"),
+    }
+)
+
 
 @dataclass(frozen=True)
 class PlacedThing:

@@ -222,6 +222,7 @@ class PoseSequence(ShownByFacts):
     subject: int = 0  # identifies the body: surface points and speckle
     girth: float = 1.0  # thickness of trunk and limbs relative to the average body of this height
     breathing: Breathing = Breathing()
+    cover_db: float = 0.0  # two-way loss of a sheet or blanket over the whole body
     vitals: VitalTruth | None = None  # of a result, whose joints include sway and tremor
 
     def facts(self) -> dict[str, str]:
@@ -369,6 +370,17 @@ LANDMARK_KINDS = (
     "cabinet",
     "couch",
     "chair",
+    "bin",
+    "mirror",
+    "whiteboard",
+    "toilet",
+    "bathtub",
+    "printer",
+    "microwave",
+    "dishwasher",
+    "radiator",
+    "piano",
+    "fireplace",
 )
 
 

@@ -63,6 +63,7 @@ from mmweaver.weaver.parsed_request import ParsedRequest
 PARTS = "parts"
 SHARES = (0.7, 0.15, 0.15)  # share of groups in train, validation and test
 DEFAULT_SECONDS = 3.0
+SET_FILES = 70  # and another for each 32 MB of signals
 # CPU seconds per 20 frames by method, including composition; measured on 300 sequences of ten activities
 SEQUENCE_S = {"weaver": 0.12, "physics": 0.4}
 ON_DEMAND_BYTES = 75_000.0  # per 30 frames without signals
@@ -339,6 +340,7 @@ class SetBuilder:
             sequences=missing,
             core_s=missing * frames / BENCHMARK_FRAMES * seconds,
             disk_bytes=missing * each,
+            files=SET_FILES,
             splits=dict(Counter(self.splits[f"split_{self.options.split_by}"]).most_common()),
         )
 

@@ -3,12 +3,12 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from mmweaver.core.checksums import SUMS_FILE, damage_of_file, read_sums
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.regular_files import Place
 from mmweaver.core.safe_files.safe_zarr import ZarrFolder
 
 
@@ -16,12 +16,12 @@ from mmweaver.core.safe_files.safe_zarr import ZarrFolder
 class CheckedFolder:
     """A room, or the root of a data set; without checksums, as before mmweaver 1.0, everything is accepted."""
 
-    folder: Path
+    folder: Place
     sums: dict[str, str] | None
     made_by: str  # command that regenerates damaged rooms
 
     @classmethod
-    def of(cls, folder: Path, made_by: str) -> "CheckedFolder":
+    def of(cls, folder: Place, made_by: str) -> "CheckedFolder":
         """Reads the checksums of a folder.
 
         Args:

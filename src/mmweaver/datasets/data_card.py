@@ -11,8 +11,10 @@ from typing import Any
 
 from mmweaver.core.atomic_files import create_once
 from mmweaver.core.constants import __version__
+from mmweaver.core.safe_files.regular_files import Place
 from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.datasets.activity_store import SET_FILE, STORE, made_by
+from mmweaver.datasets.dataset_folder import room_place
 from mmweaver.datasets.dataset_plan import command_of
 from mmweaver.datasets.dataset_store import read_plan
 
@@ -86,7 +88,8 @@ def write_rooms_card(folder: Path, rooms: Sequence[str], axes: Iterable[str]) ->
     if (folder / CARD_FILE).exists():
         return
     plan = read_plan(folder)
-    counts = {room: _shape(folder / room / "seed")[0] for room in rooms if (folder / room / "seed").is_dir()}
+    places = {room: room_place(folder, room) / "seed" for room in rooms}
+    counts = {room: _shape(place)[0] for room, place in places.items() if place.is_dir()}
     shown = next(iter(counts), rooms[0])
     facts = {
         "radar": plan["radar"],
@@ -104,8 +107,10 @@ def write_rooms_card(folder: Path, rooms: Sequence[str], axes: Iterable[str]) ->
         "about": "Rooms, people and motions are drawn from the seed; the same command gives the same bits.",
         "command": command_of(plan, Path("OUT")).removesuffix(" --repair"),
     }
-    arrays = [*_arrays(folder, axes), *_arrays(folder, (shown,))]
-    _write(folder, head, facts, arrays, where=f"A Zarr group for each room; shapes are those of `{shown}`.")
+    of_room = ((f"{shown}/{name}", *rest) for name, *rest in _arrays(room_place(folder, shown), ("",)))
+    arrays = [*_arrays(folder, axes), *of_room]
+    each = "zip (uncompressed, `zarr.storage.ZipStore`)" if plan.get("packed") else "group"
+    _write(folder, head, facts, arrays, where=f"A Zarr {each} for each room; shapes are those of `{shown}`.")
 
 
 def write_set_card(folder: Path) -> None:
@@ -164,10 +169,11 @@ def _cell(value: Any) -> str:
     return "".join(f"\\{one}" if one in "|<>[]*\\" else one for one in text)
 
 
-def _arrays(folder: Path, names: Iterable[str]) -> Iterator[tuple[str, ...]]:
+def _arrays(folder: Place, names: Iterable[str]) -> Iterator[tuple[str, ...]]:
     """Name, dimensions, shape, dtype and unit of the arrays in, or at, these entries of a Zarr group."""
     for name in names:
-        for file in sorted((folder / name).rglob(METADATA)):
+        below: Any = folder / name if name else folder
+        for file in sorted(below.rglob(METADATA)):
             about = read_json(file)
             if about.get("node_type") != "array":
                 continue
@@ -181,5 +187,5 @@ def _arrays(folder: Path, names: Iterable[str]) -> Iterator[tuple[str, ...]]:
             )
 
 
-def _shape(array: Path) -> list[int]:
+def _shape(array: Place) -> list[int]:
     return read_json(array / METADATA)["shape"]

@@ -15,6 +15,7 @@ from mmweaver.core.board import Board
 from mmweaver.core.boards import find_board
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.planned_sequences import (
     PlannedSequences,
@@ -24,8 +25,8 @@ from mmweaver.datasets.planned_sequences import (
     planned_sequences,
 )
 
-# 2: first-order paths, one reflection coefficient per wall, no clutter. 3: seeds of 31 bits, one after another; read and
-# continued still. 4: seeds of 64 bits from counters (`planned_sequences`).
+# 2: first-order paths, one reflection coefficient per wall, no clutter. 3: seeds of 31 bits, one after another; read
+# and continued still. 4: seeds of 64 bits from counters (`planned_sequences`).
 PLAN_VERSION, SEQUENTIAL_VERSION = 4, 3
 RADAR_FILE = "radar.json"  # radar with range window, in the root of a data set
 # Activities of the paper and three more, each phrased in several ways.
@@ -345,6 +346,23 @@ class DatasetPlan:
         if not self.packed:
             del values["packed"]
         return json.dumps(values, indent=1)
+
+
+def begun_version(folder: Path) -> int | None:
+    """Version of the plan of an existing data set, so that it is continued as it was begun.
+
+    Args:
+        folder: The data set.
+
+    Returns:
+        The version if this mmweaver can continue it; otherwise None.
+    """
+    try:
+        plan = read_json(folder / "plan.json")
+        version = plan.get("plan_version") if isinstance(plan, dict) else None
+    except InputError:
+        return None
+    return version if version in (PLAN_VERSION, SEQUENTIAL_VERSION) else None
 
 
 FLAGS = {"geometry_only": "--geometry-only", "packed": "--packed"}

@@ -10,6 +10,7 @@
         empty_iq    (range, antenna, part)  static clutter of the room
         SHA256SUMS  of all files of the room; the root has one of its own files
         geometry/   instead of iq: stored geometry from which signals are synthesised (`geometry_store`)
+    OUT/office_003.zip         instead of the folder, if the set is packed: the same files, uncompressed
 
 Every chunk ends in its CRC-32C, and every file is checked before use: signals and geometry when they are first read,
 all other files of a room when it is opened. Written by `dataset_writer`. Reference: Zarr v3, xarray's
@@ -28,32 +29,26 @@ from mmweaver.core.checksums import check_file
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, RadarCube, RgbdPhoto
+from mmweaver.core.safe_files.regular_files import Place
 from mmweaver.core.safe_files.safe_text import parse_json, read_text
 from mmweaver.core.safe_files.safe_zarr import ZarrFolder, open_zarr
 from mmweaver.datasets.checked_folder import CheckedFolder, stored_iq
+from mmweaver.datasets.dataset_folder import PLAN_FILE, finished, room_place
 from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M, check_plan, command_of, room_name
 from mmweaver.datasets.geometry_store import GEOMETRY, StoredGeometry
 from mmweaver.datasets.zarr_arrays import stored_photo
 
-PLAN_FILE = "plan.json"
 FARTHEST_M, FASTEST_MPS = 1000.0, 1000.0  # limits of joints and depths; anything beyond indicates damage
-
-
-def is_done(folder: Path, name: str) -> bool:
-    """Whether a room is complete; it is renamed into place only then."""
-    room = folder / name
-    return room.is_dir() and any(room.iterdir())
 
 
 @dataclass(frozen=True, kw_only=True)
 class StoredRoom:
-    """A room of a data set: photo and joints in memory, cubes read or synthesised on demand."""
+    """A room of a data set: joints in memory; photo and cubes are read, or cubes synthesised, on demand."""
 
     files: CheckedFolder
     kind: str
     layout: int
     lighting: str
-    photo: RgbdPhoto
     static: np.ndarray  # (range, antenna) complex64, static clutter at the peak of zero Doppler, sqrt(mW)
     joints_m: np.ndarray  # (sequence, frame, 22, 3)
     joint_velocity_mps: np.ndarray  # (sequence, frame, 22, 3)
@@ -65,11 +60,20 @@ class StoredRoom:
     config: RadarConfig
     geometry: StoredGeometry | None = None  # for data sets without signals
     device: str = "cpu"  # device on which signals are synthesised from geometry
+    given_photo: RgbdPhoto | None = None  # instead of the stored one
 
     @property
-    def folder(self) -> Path:
-        """Folder of the room."""
+    def folder(self) -> Place:
+        """Folder of the room, or its root in a zip."""
         return self.files.folder
+
+    @cached_property
+    def photo(self) -> RgbdPhoto:
+        """Photo of the room. Raises InputError if it is damaged."""
+        if self.given_photo is not None:
+            return self.given_photo
+        with self.files.reading():
+            return stored_photo(self._arrays)
 
     def cube(self, index: int, frames: np.ndarray | None = None, *, realization: int = 0) -> RadarCube:
         """Reads or synthesises the cube of one sequence.
@@ -141,13 +145,13 @@ def read_rooms(folder: Path, *, device: str = "cpu") -> list[StoredRoom]:
     """
     plan = read_plan(folder)
     names = sorted(room_name(kind, layout) for kind in plan["kinds"] for layout in range(plan["num_layouts"]))
-    missing = [name for name in names if not is_done(folder, name)]
+    missing = sorted(set(names) - finished(folder, names))
     made_by = command_of(plan, folder)
     if missing:
         others = f" and {len(missing) - 1} more of its {len(names)} rooms are" if len(missing) > 1 else " is"
         raise InputError(f"{folder} is not complete: {missing[0]}{others} missing; make the rest with: {made_by}")
     config = read_radar(folder)
-    rooms = (_room(CheckedFolder.of(folder / name, made_by), config, device) for name in names)
+    rooms = (_room(CheckedFolder.of(room_place(folder, name), made_by), config, device) for name in names)
     return [room for room in rooms if room is not None]
 
 
@@ -221,12 +225,13 @@ def _stored_room(files: CheckedFolder, group: ZarrFolder, config: RadarConfig, d
         kind=group.attr("kind", str),
         layout=group.attr("layout", int),
         lighting=group.attr("lighting", str),
-        photo=stored_photo(group),
         static=(static[..., 0] + 1j * static[..., 1]).astype(np.complex64),
         joints_m=joints_m,
         joint_velocity_mps=group.numbers("joint_velocity_mps", pose, kinds="f", low=-FASTEST_MPS, high=FASTEST_MPS),
         person=group.numbers(people, one_each, kinds="iu", low=0, high=len(PEOPLE_HEIGHT_M) - 1),
-        **words,
+        activity=words["activity"],
+        text=words["text"],
+        split=words["split"],
         seed=group.numbers("seed", one_each, kinds="iu", low=0),
         config=config,
         geometry=StoredGeometry(files=files, config=config) if group.has_group(GEOMETRY) else None,

@@ -7,18 +7,18 @@ plan.json, which the first process creates; each process completes what is missi
 """
 
 import hashlib
+import itertools
 import json
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mmweaver.core.atomic_files import atomic_file, atomic_files, create_once, staged_folder
-from mmweaver.core.board import Board
 from mmweaver.core.checksums import SUMS_FILE, damages, read_sums, sums_text, write_sums
 from mmweaver.core.errors import InputError
 from mmweaver.core.locks import locked
@@ -26,17 +26,31 @@ from mmweaver.core.optional_packages import need
 from mmweaver.core.output_checks import cannot_write, is_empty, resolved
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid
-from mmweaver.core.safe_files.regular_files import MEGABYTE, read_bytes
+from mmweaver.core.safe_files.packed_folder import pack_folder
+from mmweaver.core.safe_files.regular_files import MEGABYTE, Place, read_bytes
 from mmweaver.core.safe_files.safe_text import parse_json, read_json
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.core.staging import is_staged, remove, staging_path, sweep, sync, sync_tree
 from mmweaver.datasets.data_card import write_rooms_card
-from mmweaver.datasets.dataset_plan import ACTIVITIES, RADAR_FILE, DatasetPlan, RoomSpec
-from mmweaver.datasets.dataset_store import PLAN_FILE, is_done
+from mmweaver.datasets.dataset_folder import PACKED, PLAN_FILE, finished, room_place
+from mmweaver.datasets.dataset_plan import ACTIVITIES, RADAR_FILE, DatasetPlan
 from mmweaver.datasets.geometry_store import write_geometry
-from mmweaver.datasets.room_generation import GeneratedRoom
-from mmweaver.datasets.zarr_arrays import packed_iq, put_array, put_photo, put_texts, write_iq, zarr_module
+from mmweaver.datasets.zarr_arrays import (
+    IQ_DIMENSIONS,
+    SequenceWriter,
+    name_parts,
+    packed_iq,
+    put_array,
+    put_photo,
+    put_texts,
+    zarr_module,
+)
 
+if TYPE_CHECKING:
+    from mmweaver.core.records import RadarCube
+    from mmweaver.datasets.room_generation import GeneratedRoom
+
+AHEAD = 4  # rooms queued per worker: the plan is not held in memory
 LARGEST_ROOT_FILE = 64 * MEGABYTE
 # dimensions and coordinates share their names, so that rooms inherit those of the root in xarray.open_datatree
 COORDINATES = {"frame_time": "frame_time_s", "range": "range_m", "radial_velocity": "radial_velocity_mps"}
@@ -154,46 +168,90 @@ def remove_damaged(folder: Path, plan: DatasetPlan) -> list[str]:
         remove(folder / SUMS_FILE)
         with atomic_file(folder / PLAN_FILE) as temporary:
             temporary.write_text(text, encoding="utf-8")
-    rooms = [room.name for room in plan.rooms() if is_done(folder, room.name)]
-    damaged = [name for name in rooms if _is_damaged(folder / name)]
+    names = [plan.name_of(number) for number in range(plan.num_rooms)]
+    damaged = sorted(name for name in finished(folder, names) if _is_damaged(room_place(folder, name)))
     for name in damaged:
-        away = staging_path(folder / name)
-        (folder / name).rename(away)
+        place = folder / room_place(folder, name).name
+        away = staging_path(place)
+        place.rename(away)
         remove(away)
     return damaged
 
 
-def _sums_or_none(folder: Path) -> dict[str, str] | None:
+def _sums_or_none(folder: Place) -> dict[str, str] | None:
     try:
         return read_sums(folder)
     except InputError:
         return None
 
 
-def _is_damaged(room: Path) -> bool:
+def _is_damaged(room: Place) -> bool:
     return _sums_or_none(room) is None or bool(damages(room))
 
 
-def write_room(folder: Path, generated: GeneratedRoom) -> None:
+@contextmanager
+def new_room(folder: Path, name: str, *, packed: bool = False) -> Iterator[Path]:
     """Writes one room atomically; an existing room is kept, since equal plans give identical data.
 
     Args:
         folder: The data set.
-        generated: The room.
+        name: Name of the room.
+        packed: Whether the room becomes one zip, which is synced once. Default: a folder, synced file by file.
+
+    Yields:
+        A temporary folder for the files of the room.
+
+    Raises:
+        InputError: If it cannot be written.
     """
-    with staged_folder(resolved(folder) / generated.spec.name, keep_existing=True) as partial:
-        group = zarr_module().open_group(partial, mode="w")
-        _put_sequences(group, generated)
-        put_photo(group, generated.photo)
-        _put_clutter(group, generated.static)
-        group.attrs.update(_attributes(generated))
+    target = resolved(folder) / name
+    if not packed:
+        with staged_folder(target, keep_existing=True) as partial:
+            yield partial
+        return
+    stage = staging_path(target)
+    try:
+        stage.mkdir()
+        yield stage
+        write_sums(stage)
+        with atomic_file(target.with_name(f"{name}{PACKED}")) as file:
+            pack_folder(stage, file)
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+    finally:
+        remove(stage)
 
 
-def _put_sequences(group: Any, generated: GeneratedRoom) -> None:
+class _CubeWriter:
+    """Writes the cubes of a room as they are made, so that memory does not grow with their number."""
+
+    def __init__(self, group: Any, config: RadarConfig, num_sequences: int, num_frames: int):
+        shape = (num_sequences, *CubeGrid.of(config, num_frames).shape, 2)
+        self.group, self.scales = group, list[float]()
+        self.writer = SequenceWriter(group, "iq", "float16", shape, IQ_DIMENSIONS)
+
+    def add(self, cube: "RadarCube") -> None:
+        pairs, scale = packed_iq(cube)
+        self.writer.add(pairs)
+        self.scales.append(scale)
+
+    def close(self) -> None:
+        self.writer.close()
+        if self.scales:
+            name_parts(self.group)
+            put_array(self.group, "iq_scale", np.array(self.scales), ("sequence",))
+
+
+def _put_room(group: Any, generated: "GeneratedRoom") -> None:
+    """Writes everything of a room except its signals."""
+    _put_sequences(group, generated)
+    put_photo(group, generated.photo)
+    _put_clutter(group, generated.static)
+    group.attrs.update(_attributes(generated))
+
+
+def _put_sequences(group: Any, generated: "GeneratedRoom") -> None:
     sequences = generated.sequences
-    if packed := [packed_iq(s.cube) for s in sequences if s.cube is not None]:
-        write_iq(group, "float16", (len(packed), *packed[0][0].shape), (pairs for pairs, _ in packed))
-        put_array(group, "iq_scale", np.array([scale for _, scale in packed]), ("sequence",))
     if generated.geometry is not None:
         write_geometry(group, generated.geometry, [s.trace for s in sequences if s.trace is not None])
     if sequences:
@@ -201,7 +259,7 @@ def _put_sequences(group: Any, generated: GeneratedRoom) -> None:
         put_array(group, "joints_m", np.stack([s.joints_m for s in sequences]), pose)
         put_array(group, "joint_velocity_mps", np.stack([s.joint_velocity_mps for s in sequences]), pose)
         put_array(group, "subject", np.array([s.spec.person for s in sequences], np.int32), ("sequence",))
-        put_array(group, "seed", np.array([s.spec.seed for s in sequences]), ("sequence",))
+        put_array(group, "seed", np.array([s.spec.seed for s in sequences], np.uint64), ("sequence",))
         labels = np.array([list(ACTIVITIES).index(s.spec.activity) for s in sequences], np.int32)
         put_array(group, "label", labels, ("sequence",))
         put_texts(group, "label_name", [s.spec.activity for s in sequences])
@@ -213,7 +271,7 @@ def _put_clutter(group: Any, static: np.ndarray) -> None:
     put_array(group, "empty_iq", np.stack([np.real(static), np.imag(static)], -1), ("range", "antenna", "part"))
 
 
-def _attributes(generated: GeneratedRoom) -> dict[str, Any]:
+def _attributes(generated: "GeneratedRoom") -> dict[str, Any]:
     spec, sequences = generated.spec, generated.sequences
     return {
         "kind": spec.kind,
@@ -275,6 +333,7 @@ def generate_dataset(
     ray_address: str | None = None,
     listener: Callable[[RoomReport], object] | None = None,
     repair: bool = False,
+    numbers: range | None = None,
 ) -> list[RoomReport]:
     """Generates the missing rooms; can be killed and called again.
 
@@ -286,6 +345,7 @@ def generate_dataset(
         ray_address: Address of a Ray cluster, one task per core; "local" for an embedded one. Default: no Ray.
         listener: Called with the report of each finished room. Default: none.
         repair: Whether existing rooms are checked and damaged ones regenerated. Default: False.
+        numbers: Numbers of the rooms that this machine makes (`DatasetPlan.part`). Default: all.
 
     Returns:
         Reports of the rooms that were generated in this call.
@@ -294,15 +354,14 @@ def generate_dataset(
         InputError: If the folder has another plan, a package is missing, or a worker was killed.
     """
     check_packages(ray_address)
-    rooms = plan.rooms()
     if repair:
         with locked(folder):
             remove_damaged(folder, plan)
     open_dataset(folder, plan, config)
     sweep(resolved(folder), again=True)
-    missing = [room for room in rooms if not is_done(folder, room.name)]
-    boards = {room.name: plan.board_of(room, config) for room in missing}
-    tasks = ((folder, room, config, plan.num_frames, plan.geometry_only, boards[room.name]) for room in missing)
+    numbers = range(plan.num_rooms) if numbers is None else numbers
+    done = finished(folder, map(plan.name_of, numbers))
+    tasks = ((folder, plan, number, config) for number in numbers if plan.name_of(number) not in done)
     reports = []
     try:
         with _executor(workers, ray_address) as run:
@@ -310,10 +369,10 @@ def generate_dataset(
                 reports.append(report)
                 if listener is not None:
                     listener(report)
-        names = [room.name for room in rooms]
-        if all(is_done(folder, name) for name in names):
+        names = [plan.name_of(number) for number in range(plan.num_rooms)]
+        if len(finished(folder, names)) == len(names):
             with locked(folder):
-                consolidate_rooms(resolved(folder), names, AXES)
+                consolidate_rooms(resolved(folder), [] if plan.packed else names, AXES)
                 write_rooms_card(resolved(folder), names, AXES)
     finally:
         sweep(resolved(folder), again=True)
@@ -328,14 +387,14 @@ def check_packages(ray_address: str | None) -> None:
         need("cluster", "--ray-address")
 
 
-Task = tuple[Path, RoomSpec, RadarConfig, int, bool, Board]
+Task = tuple[Path, DatasetPlan, int, RadarConfig]
 
 
 def generate_one(task: Task) -> RoomReport:
     """Generates and writes one room on a single thread.
 
     Args:
-        task: Folder, room, radar, frames per sequence, whether only geometry is stored, and board.
+        task: Folder, plan, number of the room, and radar.
 
     Returns:
         Summary of the room.
@@ -344,10 +403,21 @@ def generate_one(task: Task) -> RoomReport:
 
     from mmweaver.datasets.room_generation import generate_room
 
-    folder, spec, config, num_frames, geometry_only, board = task
+    folder, plan, number, config = task
+    spec = plan.room(number)
+    how: dict[str, Any] = {"geometry_only": plan.geometry_only, "board": plan.board_of(spec, config)}
     with threadpool_limits(limits=1):
-        room = generate_room(spec, config, num_frames, geometry_only=geometry_only, board=board)
-    write_room(folder, room)
+        if plan.geometry_only:  # small, and other machines would take a folder in which nothing changes for a leftover
+            room = generate_room(spec, config, plan.num_frames, **how)
+            with new_room(folder, spec.name, packed=plan.packed) as partial:
+                _put_room(zarr_module().open_group(partial, mode="w"), room)
+        else:
+            with new_room(folder, spec.name, packed=plan.packed) as partial:
+                group = zarr_module().open_group(partial, mode="w")
+                cubes = _CubeWriter(group, config, len(spec.sequences), plan.num_frames)
+                room = generate_room(spec, config, plan.num_frames, take_cube=cubes.add, **how)
+                cubes.close()
+                _put_room(group, room)
     return RoomReport(name=spec.name, num_sequences=len(room.sequences), refused=room.refused)
 
 
@@ -367,7 +437,7 @@ def _executor(workers: int, ray_address: str | None) -> Iterator[Callable[[Itera
 def _processes(workers: int) -> Iterator[Callable[[Iterable[Task]], Iterator[RoomReport]]]:
     """Local processes. Raises InputError if one is killed, in which case multiprocessing.Pool would hang."""
     import multiprocessing
-    from concurrent.futures import ProcessPoolExecutor, as_completed
+    from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
     from concurrent.futures.process import BrokenProcessPool
 
     others = set(multiprocessing.active_children())
@@ -375,8 +445,13 @@ def _processes(workers: int) -> Iterator[Callable[[Iterable[Task]], Iterator[Roo
 
     def run(tasks: Iterable[Task]) -> Iterator[RoomReport]:
         try:
-            for done in as_completed([pool.submit(generate_one, task) for task in tasks]):
-                yield done.result()
+            waiting: set[Any] = set()
+            for task in itertools.chain(tasks, [None] * AHEAD * workers):  # the rest only empties the queue
+                if task is not None:
+                    waiting.add(pool.submit(generate_one, task))
+                if waiting and (task is None or len(waiting) == AHEAD * workers):
+                    done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
+                    yield from (one.result() for one in done)
         except BrokenProcessPool:
             raise InputError(
                 "a worker was killed, perhaps for want of memory; finished rooms are kept: the same command makes the"
@@ -423,10 +498,13 @@ def _ray(workers: int, address: str) -> Iterator[Callable[[Iterable[Task]], Iter
     remote = ray.remote(num_cpus=1, max_retries=3)(generate_one)
 
     def run(tasks: Iterable[Task]) -> Iterator[RoomReport]:
-        waiting = [remote.remote(task) for task in tasks]
-        while waiting:
-            done, waiting = ray.wait(waiting)
-            yield from ray.get(done)
+        waiting: list[Any] = []
+        ahead = AHEAD * max(workers, int(ray.cluster_resources().get("CPU", workers)))
+        for task in itertools.chain(tasks, [None] * ahead):
+            waiting += [] if task is None else [remote.remote(task)]
+            if waiting and (task is None or len(waiting) == ahead):
+                done, waiting = ray.wait(waiting)
+                yield from ray.get(done)
 
     try:
         yield run

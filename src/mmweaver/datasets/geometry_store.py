@@ -12,7 +12,7 @@ import hashlib
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field, fields
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,7 +21,6 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_zarr import ZarrFolder, open_zarr
 from mmweaver.datasets.checked_folder import CheckedFolder
-from mmweaver.datasets.room_generation import RoomGeometry
 from mmweaver.datasets.zarr_arrays import put_array
 from mmweaver.propagation.body_model import DEFAULT_NUM_POINTS, ScatteringBody
 from mmweaver.propagation.body_paths import GHOST_POINTS, ghost_points
@@ -29,6 +28,9 @@ from mmweaver.propagation.occlusion import Visibility
 from mmweaver.propagation.paths import STATIC_KINDS, FrameClock, Interaction
 from mmweaver.propagation.static_paths import AS_PUBLISHED, PreparedRoom, Propagation
 from mmweaver.propagation.static_paths_store import room_arrays, room_of, room_words
+
+if TYPE_CHECKING:
+    from mmweaver.datasets.room_generation import RoomGeometry
 
 GEOMETRY = "geometry"
 ROOMS = ("room", "photographed")
@@ -45,7 +47,7 @@ ROOM_ARRAYS: dict[str, tuple[tuple[int | str, ...], str]] = {
 }
 
 
-def write_geometry(group: Any, geometry: RoomGeometry, traces: Sequence[tuple[np.ndarray, Visibility]]) -> None:
+def write_geometry(group: Any, geometry: "RoomGeometry", traces: Sequence[tuple[np.ndarray, Visibility]]) -> None:
     """Writes geometry into a room's Zarr group.
 
     Args:

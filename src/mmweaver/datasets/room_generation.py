@@ -1,5 +1,6 @@
 """Generates one room of a data set: its photo and the radar signals of its sequences."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -67,6 +68,7 @@ def generate_room(
     geometry_only: bool = False,
     board: Board = IDEAL_BOARD,
     propagation: Propagation = ALL_PATHS,
+    take_cube: Callable[[RadarCube], object] | None = None,
 ) -> GeneratedRoom:
     """Generates a room and simulates all its sequences with one board; about 0.35 CPU seconds per sequence.
 
@@ -78,6 +80,7 @@ def generate_room(
             synthesised later. Default: False.
         board: Board of all signals. Default: ideal.
         propagation: Paths that are simulated. Default: all, including second order and clutter.
+        take_cube: Called with the cube of each sequence, which the room then does not hold. Default: it holds them.
 
     Returns:
         The room.
@@ -95,9 +98,14 @@ def generate_room(
     made, refused = [], []
     for sequence in spec.sequences:
         try:
-            made.append(generate_sequence(sequence, true_scene, simulator, num_frames, geometry_only=geometry_only))
+            one = generate_sequence(sequence, true_scene, simulator, num_frames, geometry_only=geometry_only)
         except InputError as error:
             refused.append((sequence.index, str(error)))
+            continue
+        if take_cube is not None and one.cube is not None:
+            take_cube(one.cube)
+            one = replace(one, cube=None)
+        made.append(one)
     return GeneratedRoom(
         spec=spec,
         photo=photo,

@@ -13,13 +13,14 @@ from typing import Any
 
 from mmweaver.core.checksums import SUMS_FILE, Damage, damage_of_file, read_sums
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.regular_files import Place
 from mmweaver.core.safe_files.safe_arrays import is_sound_zip
 from mmweaver.core.safe_files.safe_text import read_json, read_toml
 from mmweaver.core.staging import COMMITTED, is_staged
 from mmweaver.core.tensor_files import read_tensors
 from mmweaver.datasets.activity_store import SET_FILE, STORE
+from mmweaver.datasets.dataset_folder import PLAN_FILE, is_done, room_place
 from mmweaver.datasets.dataset_plan import check_plan, command_of, room_name, shell_words
-from mmweaver.datasets.dataset_store import PLAN_FILE, is_done
 from mmweaver.io.stream_folder import LIST, PARTS, is_stream, listed_parts
 
 REQUEST = "request.toml"
@@ -132,10 +133,11 @@ def _verified_dataset(folder: Path) -> Verification:
     except (OSError, ValueError, KeyError, TypeError):
         command = f"mmweaver dataset {shlex.quote(str(folder))} --repair, with the options it was made with"
         names = [one.name for one in folder.iterdir() if one.is_dir() and (one / SUMS_FILE).is_file()]
+        names += [one.stem for one in folder.glob("[!.]*.zip")]
     _check_sums(found, folder, command)
     for name in sorted(names):
         if is_done(folder, name):
-            _check_sums(found, folder / name, command)
+            _check_sums(found, room_place(folder, name), command)
         else:
             found.blame([Damage(file=folder / name, what="is missing")], command)
     return found
@@ -263,7 +265,7 @@ def _is_sound_mmwl(file: Path) -> bool:
 OWN_CHECKSUMS = {".mmw": _is_sound_mmw, ".mmwl": _is_sound_mmwl, ".npz": is_sound_zip, ".zip": is_sound_zip}
 
 
-def _check_sums(found: Verification, folder: Path, command: str) -> None:
+def _check_sums(found: Verification, folder: Place, command: str) -> None:
     if (folder / COMMITTED).is_dir():
         found.blame([Damage(file=folder, what="was being replaced when that was interrupted")], command)
     try:

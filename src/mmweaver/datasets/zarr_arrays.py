@@ -72,6 +72,76 @@ def _put_unit(array: Any, name: str) -> None:
         array.attrs["units"] = unit
 
 
+class SequenceWriter:
+    """Writes an array one sequence after another; each is a chunk, in shards of at most SHARD_BYTES.
+
+    Holds one shard in memory. The number of sequences may turn out smaller than announced.
+
+    Args:
+        group: Zarr group.
+        name: Name of the array.
+        kind: Dtype.
+        shape: (sequence, ...), with the largest number of sequences.
+        dimensions: Names of the dimensions.
+        packing: Codecs of the chunks. Default: none.
+    """
+
+    def __init__(
+        self,
+        group: Any,
+        name: str,
+        kind: str,
+        shape: tuple[int, ...],
+        dimensions: tuple[str, ...],
+        *,
+        packing: Sequence[Any] = (),
+    ):
+        self.group, self.name, self.kind, self.shape = group, name, kind, shape
+        self.dimensions, self.packing = dimensions, packing
+        self.count = 0
+        self._in_shard = min(max(1, SHARD_BYTES // (int(np.prod(shape[1:])) * np.dtype(kind).itemsize)), shape[0])
+        self._kept: list[np.ndarray] = []
+        self._array: Any = None
+
+    def add(self, values: np.ndarray) -> None:
+        """Adds one sequence."""
+        if len(self._kept) == self._in_shard:
+            self._flush(self.shape[0])
+        self._kept.append(values)
+
+    def close(self) -> None:
+        """Writes the last shard, and the number of sequences that were added."""
+        total = self.count + len(self._kept)
+        if self._kept:
+            self._flush(total)
+        if self._array is not None and total != self._array.shape[0]:
+            self._array.resize((total, *self.shape[1:]))
+
+    def _flush(self, total: int) -> None:
+        if self._array is None:
+            self._array = self._create(total)
+        first, self.count = self.count, self.count + len(self._kept)
+        self._array[first : self.count] = np.stack(self._kept)
+        self._kept = []
+
+    def _create(self, total: int) -> Any:
+        from zarr.codecs import Crc32cCodec
+
+        array = self.group.create_array(
+            self.name,
+            shape=(total, *self.shape[1:]),
+            chunks=(1, *self.shape[1:]),
+            shards=(min(self._in_shard, total), *self.shape[1:]),
+            dtype=self.kind,
+            overwrite=True,
+            dimension_names=self.dimensions,
+            compressors=[*self.packing, Crc32cCodec()],
+            config={"write_empty_chunks": True},
+        )
+        _put_unit(array, self.name)
+        return array
+
+
 def put_sequences(
     group: Any,
     name: str,
@@ -82,39 +152,11 @@ def put_sequences(
     *,
     packing: Sequence[Any] = (),
 ) -> None:
-    """Writes an array one sequence after another; each is a chunk, in shards of at most SHARD_BYTES.
-
-    Args:
-        group: Zarr group.
-        name: Name of the array.
-        kind: Dtype.
-        shape: (sequence, ...).
-        dimensions: Names of the dimensions.
-        sequences: Values of each sequence.
-        packing: Codecs of the chunks. Default: none.
-    """
-    from zarr.codecs import Crc32cCodec
-
-    bytes_each = int(np.prod(shape[1:])) * np.dtype(kind).itemsize
-    in_shard = min(max(1, SHARD_BYTES // bytes_each), shape[0])
-    array = group.create_array(
-        name,
-        shape=shape,
-        chunks=(1, *shape[1:]),
-        shards=(in_shard, *shape[1:]),
-        dtype=kind,
-        overwrite=True,
-        dimension_names=dimensions,
-        compressors=[*packing, Crc32cCodec()],
-        config={"write_empty_chunks": True},
-    )
-    _put_unit(array, name)
-    kept: list[np.ndarray] = []
-    for number, values in enumerate(sequences, start=1):
-        kept.append(values)
-        if len(kept) == in_shard or number == shape[0]:
-            array[number - len(kept) : number] = np.stack(kept)
-            kept = []
+    """Writes an array from the values of each sequence; see `SequenceWriter`."""
+    writer = SequenceWriter(group, name, kind, shape, dimensions, packing=packing)
+    for values in sequences:
+        writer.add(values)
+    writer.close()
 
 
 def write_iq(group: Any, kind: str, shape: tuple[int, ...], sequences: Iterable[np.ndarray]) -> None:
@@ -127,6 +169,11 @@ def write_iq(group: Any, kind: str, shape: tuple[int, ...], sequences: Iterable[
         sequences: Values of each sequence.
     """
     put_sequences(group, "iq", kind, shape, IQ_DIMENSIONS, sequences)
+    name_parts(group)
+
+
+def name_parts(group: Any) -> None:
+    """Names the real parts of stored signals."""
     group["iq"].attrs["part_names"] = ["in-phase", "quadrature"]
 
 

@@ -14,7 +14,7 @@ from mmweaver.io.mmwave_studio import is_mmwave_studio
 from mmweaver.io.sample_files import part_files
 
 SETTINGS = ("*.mmwave.json", "*.cfg", "*.lua", "radar.json")
-FILLED = re.compile(r"zero[ -]?filled packets\s*[-:=]\s*(\d+)", re.IGNORECASE)
+FILLED = re.compile(r"zero[ -]?filled packets\s*[-:=,]\s*(\d+)", re.IGNORECASE)
 MAX_LOG_BYTES = 10_000_000
 
 

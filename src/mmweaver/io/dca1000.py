@@ -231,7 +231,7 @@ def write_bin(
     """
     words, counts = words_of(adc, iq_order=iq_order, tx_order=tx_order, counts_per_unit=counts_per_unit)
     with atomic_file(Path(path)) as temporary:
-        temporary.write_bytes(memoryview(words))  # numpy's own tofile hides why it failed
+        temporary.write_bytes(np.ascontiguousarray(words).data)  # numpy's own tofile hides why it failed
     return counts
 
 

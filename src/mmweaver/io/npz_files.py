@@ -15,6 +15,7 @@ from mmweaver.core.checksums import check_file
 from mmweaver.core.errors import InputError, file_named
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, PointCloud, PoseSequence, RadarCube
+from mmweaver.core.safe_files.regular_files import open_regular
 from mmweaver.core.safe_files.safe_arrays import NpzArrays, read_npz
 from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.core.shapes import PerFrame
@@ -33,7 +34,21 @@ CUBE_UNITS = {
 POINT_COLUMNS = ("x_m", "y_m", "z_m", "radial_velocity_mps", "snr_db")
 FIRMWARE_COLUMNS = ("intensity",)
 MAX_CUBE, MAX_TIME_S = 1e15, 1e12  # far above recorded values; squares and sums stay finite
+COPIED_BYTES = 2**24  # at once, of a file
 NO_DATE = (1980, 1, 1, 0, 0, 0)  # earliest date of the zip format
+
+
+class DiskCube(np.memmap):
+    """Values of a cube in a file of nothing else; those at zero Doppler, which slow time needs, are held in memory."""
+
+    still: np.ndarray
+
+    def __getitem__(self, key: Any) -> Any:
+        """As of an array; a selection is a copy in memory."""
+        is_doppler = isinstance(key, tuple) and len(key) == 3 and key[:2] == (slice(None), slice(None))
+        if is_doppler and hasattr(self, "still") and key[2] == self.shape[2] // 2:
+            return self.still
+        return np.array(np.asarray(super().__getitem__(key)))
 
 
 # radar.npz ----------------------------------------------------------------------------------------------------------
@@ -47,7 +62,7 @@ def write_radar_npz(path: Path, cube: RadarCube) -> None:
     axes = {name: np.asarray(value, np.float64) for name, value in vars(cube.grid).items()}
     write_npz(
         path,
-        cube=np.asarray(cube.values, np.complex64),
+        cube=cube.values if isinstance(cube.values, DiskCube) else np.asarray(cube.values, np.complex64),
         **axes,
         scale=np.float64(cube.scale),
         axes=np.array(CUBE_AXES),
@@ -223,7 +238,21 @@ def write_npz(path: Path, **arrays: np.ndarray | np.generic) -> None:
         for name, array in arrays.items():
             entry = zipfile.ZipInfo(f"{name}.npy", date_time=NO_DATE)
             with archive.open(entry, "w", force_zip64=True) as stream:
-                np.lib.format.write_array(stream, np.asanyarray(array), allow_pickle=False)
+                if isinstance(array, DiskCube):
+                    _copy_mapped(stream, array)
+                else:
+                    np.lib.format.write_array(stream, np.asanyarray(array), allow_pickle=False)
+
+
+def _copy_mapped(stream: Any, array: DiskCube) -> None:
+    """Writes a whole file's array like `write_array`, without its pages staying in memory."""
+    np.lib.format.write_array_header_1_0(stream, np.lib.format.header_data_from_array_1_0(array))
+    with open_regular(Path(str(array.filename))) as file:
+        file.seek(array.offset)
+        left = array.nbytes
+        while left and (piece := file.read(min(left, COPIED_BYTES))):
+            stream.write(piece)
+            left -= len(piece)
 
 
 def _read(path: Path, mapped: tuple[str, ...] = ()) -> NpzArrays:

@@ -91,6 +91,7 @@ class FrameMotion:
     girth: float = 1.0
     trunk_m: np.ndarray | None = None  # outward displacement of chest and belly by breathing, (frame, 2), and its rate
     trunk_mps: np.ndarray | None = None
+    cover_db: float = 0.0  # two-way loss of a blanket
 
     @classmethod
     def of(
@@ -133,6 +134,7 @@ class FrameMotion:
             trunk = {"trunk_m": trunk_m[0], "trunk_mps": (trunk_m[1] - trunk_m[0]) / STEP_S}
         return cls(
             **trunk,
+            cover_db=pose.cover_db,
             joints_m=joints_m,
             velocity_mps=velocity_mps,
             subject=pose.subject,

@@ -221,7 +221,8 @@ class LearnedRoom:
             self._shown(one, joints[:, index], [other[:, index] for other in others_m])
             for index, one in enumerate(each)
         ]
-        echoes = replace(echoes, cross_section_m2=echoes.cross_section_m2 * torch.stack(shown, 1))
+        passed = 10 ** (-motion.cover_db / 10)
+        echoes = replace(echoes, cross_section_m2=echoes.cross_section_m2 * torch.stack(shown, 1) * passed)
         if motion.trunk_m is not None and motion.trunk_mps is not None:
             share = trunk_share(joints)
             late_m, late_mps = (

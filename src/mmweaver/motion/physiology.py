@@ -7,8 +7,8 @@ Breathing: 12 to 20 per minute at rest, 4 to 12 mm peak to peak at the front of 
 measurement of heart and respiration rates", 2006; De Groote et al., J. Appl. Physiol. 83, 1997); period and depth vary
 by some 5 and 15 % (Tobin et al., Chest 84, 1983), a pause follows the exhalation, and lying people breathe with the
 belly, standing ones mostly with the chest (Konno and Mead, J. Appl. Physiol. 22, 1967). Heart: 0.1 to 0.5 mm at the
-chest, with respiratory sinus arrhythmia and a slower wave of 0.1 Hz (Task Force, Circulation 93, 1996). Sway: 1.5 mm
-rms of the centre of mass, half of the 3 mm that posturography reports over minutes of quiet standing (Prieto et al.,
+chest, with respiratory sinus arrhythmia and a slower wave of 0.1 Hz (Task Force, Circulation 93, 1996). Sway: 1 mm
+rms of the centre of mass, a third of the 3 mm that posturography reports over minutes of quiet standing (Prieto et al.,
 IEEE Trans. Biomed. Eng. 43, 1996), since recorded people who keep still move by 4 to 8 mm peak to peak, breath
 included; a fraction of that seated, hardly any lying. The trunk moves over the hips as much as the legs over the ankles
 (Aramaki et al., 2001). Tremor is physiological: 8 to 12 Hz, about 0.1 mm at an outstretched hand.
@@ -37,6 +37,9 @@ LYING = 0.1  # of sway, wavering and tremor
 # Wavering of each joint relative to its parent, as a share of `waver_m`. Standing feet do not waver.
 WAVER = {"knee": 0.2, "spine1": 0.6, "spine3": 0.6, "head": 0.5, "shoulder": 0.3, "elbow": 0.3, "wrist": 0.4}
 WEIGHT = np.array([WAVER.get(name.split("_")[-1], 0.0) for name in JOINT_NAMES])
+# How far joints follow the front of the chest, forwards and half as much upwards: shoulders, neck and head ride on it.
+LIFT = {"spine3": 0.25, "neck": 0.25, "head": 0.25, "collar": 0.3, "shoulder": 0.3, "elbow": 0.2, "wrist": 0.1}
+LIFTED = np.array([LIFT.get(name.split("_")[-1], 0.0) for name in JOINT_NAMES])
 BREATH_HZ, HEART_HZ = (0.2, 0.33), (0.95, 1.35)
 CHEST_SHARE = {"lying": 0.45, "seated": 0.85, "standing": 1.0}  # of the depth of a breath
 BELLY_SHARE = {"lying": 1.0, "seated": 0.9, "standing": 0.6}
@@ -62,10 +65,10 @@ class PhysiologySettings:
         depth_variation: Relative variation of the depth, rms.
     """
 
-    sway_m: float = 1.5e-3
-    waver_m: float = 0.15e-3
+    sway_m: float = 1.0e-3
+    waver_m: float = 0.1e-3
     tremor_m: float = 0.08e-3
-    breath_m: float = 6.0e-3
+    breath_m: float = 5.0e-3
     heart_m: float = 0.35e-3
     breath_variation: float = 0.04
     depth_variation: float = 0.15
@@ -147,7 +150,7 @@ class Physiology:
         return cls(pose.subject, seed, settings, pose.breathing)
 
     def moved(self, joints_m: np.ndarray, time_s: np.ndarray, height_m: float) -> np.ndarray:
-        """Adds sway, wavering and tremor to joints.
+        """Adds sway, wavering, tremor and the lift of the shoulders by breathing to joints.
 
         Args:
             joints_m: Joints (time, 22, 3) in metres, z up.
@@ -158,7 +161,7 @@ class Physiology:
             Joints (time, 22, 3) in metres; `joints_m` itself if these amplitudes are zero.
         """
         settings = self.settings
-        if not (settings.sway_m or settings.waver_m or settings.tremor_m):
+        if not (settings.sway_m or settings.waver_m or settings.tremor_m or settings.breath_m):
             return joints_m
         stands, rests = _stands(joints_m, height_m), 1 - (1 - LYING) * _lies(joints_m)
         lever = _height_over_support(joints_m, stands) / (CENTRE_OF_MASS * height_m)
@@ -169,6 +172,9 @@ class Physiology:
         level = sway[:, :1] * front + 0.6 * sway[:, 1:] * right
         moved = joints_m.astype(float)
         moved[..., :2] += lever[..., None] * level[:, None]
+        lift = (1 - _lies(joints_m)) * self.trunk_m(joints_m, time_s, height_m)[:, :1] * LIFTED
+        moved[..., :2] += lift[..., None] * front[:, None]
+        moved[..., 2] += lift / 2
         waver_m, tremor_m = (
             (rests * amplitude * _share(seated, stands))[..., None]
             for amplitude, seated in ((settings.waver_m, SEATED_WAVER), (settings.tremor_m, SEATED_TREMOR))
@@ -277,6 +283,29 @@ RATE = re.compile(
     r"(?:times|breaths?) (?:per|a|each|every) minute\b"
 )
 RATE_LIMITS = (4.0, 60.0)
+
+
+# Two-way loss of what covers a sleeper, in dB; estimates: 1 to 2 dB per pass through cotton and filling.
+COVERS_DB = {"sheet": 1.0, "blanket": 3.0, "covers": 3.0, "quilt": 4.0, "duvet": 5.0}
+COVER = re.compile(rf",?\s*\bunder (?:an?|the|his|her|their) (?:thin |thick |warm )?({'|'.join(COVERS_DB)})\b")
+
+
+def cover_of(text: str) -> tuple[str, float]:
+    """Takes a blanket out of a sentence.
+
+    Args:
+        text: "a person lies on the floor under a blanket".
+
+    Returns:
+        The rest of the sentence, and the two-way loss of the cover in dB, 0 without one.
+
+    >>> cover_of("a person lies on the floor under a blanket")
+    ('a person lies on the floor', 3.0)
+    """
+    found = COVER.search(text)
+    if found is None:
+        return text, 0.0
+    return (text[: found.start()] + text[found.end() :]).strip(" ,"), COVERS_DB[found[1]]
 
 
 def breathing_rate_of(text: str) -> tuple[str, float | None]:

@@ -172,7 +172,9 @@ def body_of(pose: PoseSequence, num_points: int = DEFAULT_NUM_POINTS, echo: Skin
         num_points: Number of skin points.
         echo: How skin scatters; by default `SkinEcho()`.
     """
-    return ScatteringBody(pose.subject, pose.height_m, num_points, echo, pose.girth)
+    body = ScatteringBody(pose.subject, pose.height_m, num_points, echo, pose.girth)
+    body.brightness = body.brightness * 10 ** (-pose.cover_db / 10)
+    return body
 
 
 @lru_cache(maxsize=1)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.records import AdcCube, RadarCube
+from mmweaver.core.records import AdcCube, PointCloud, RadarCube
 from mmweaver.signal.doppler_spectrogram import MicroDoppler, micro_doppler
 from mmweaver.signal.points import point_cloud
 from mmweaver.signal.slow_time import SlowTimeCell, moving_cells, slow_time_doppler
@@ -101,17 +101,36 @@ def analyse_recording(cube: RadarCube, adc: AdcCube | None) -> RecordingAnalysis
     Returns:
         The analysis; parts that are not available are None or empty.
     """
-    is_sequence = len(cube.values) > 1
-    slow = slow_time_doppler(cube) if is_sequence else None
-    cells = tuple(moving_cells(cube))
+    people = point_cloud(cube, moving_only=True) if _may_show_people(cube) else None
+    return recording_analysis(cube, _micro_doppler(adc), people, range_doppler_power(cube).sum(axis=1))
+
+
+def recording_analysis(
+    cube: RadarCube, spectrogram: MicroDoppler | None, moving: PointCloud | None, power: np.ndarray
+) -> RecordingAnalysis:
+    """Puts an analysis together.
+
+    Args:
+        cube: Radar cube, of which only values at zero Doppler are used.
+        spectrogram: Micro-Doppler; None if it is not available.
+        moving: Points without static clutter; None if people cannot be tracked.
+        power: Doppler spectrum of each frame, summed over range, (frame, doppler).
+
+    Returns:
+        The analysis; parts that are not available are None or empty.
+    """
+    slow = slow_time_doppler(cube) if len(cube.values) > 1 else None
+    cells, total = tuple(moving_cells(cube)), power.sum(axis=0)
+    static = float(total[~moving_doppler(cube)].sum())
+    is_tracked = moving is not None and len(cube.values) > 1
     return RecordingAnalysis(
         slow_doppler=None if slow is None else slow[0],
         slow_velocity_mps=None if slow is None else slow[1],
         cells=cells,
         vital_signs=_vital_signs(cells, cube.config.frame_period_s),
-        micro_doppler=_micro_doppler(adc),
-        people=_people(cube),
-        static_share=_static_share(cube),
+        micro_doppler=clear_spectrogram(spectrogram),
+        people=tuple(track_people(moving, cube.grid.frame_time_s)) if is_tracked else (),
+        static_share=static / float(total.sum()) if total.sum() > 0 else 0.0,
     )
 
 
@@ -125,32 +144,27 @@ def _vital_signs(cells: tuple[SlowTimeCell, ...], period_s: float) -> VitalSigns
         if breathing is not None and breathing.is_clear:
             heart = heart_rate(cell.displacement_m, period_s, breathing)
             found.append(VitalSigns(range_m=cell.range_m, breathing=breathing, heart=heart))
-    return max(found, key=lambda one: one.breathing.peak_over_median_db if one.breathing else 0.0, default=None)
+    return max(found, key=lambda one: one.breathing.confidence if one.breathing else 0.0, default=None)
 
 
 def _micro_doppler(adc: AdcCube | None) -> MicroDoppler | None:
-    """Micro-Doppler spectrogram; None without samples, with too few loops, or if it shows only noise."""
+    """Micro-Doppler spectrogram; None without samples or with too few loops."""
     if adc is None:
         return None
     try:
-        found = micro_doppler(adc)
+        return micro_doppler(adc)
     except InputError:  # too few loops
         return None
-    return found if found.power.max() > MIN_CONTRAST * np.median(found.power) else None
 
 
-def _people(cube: RadarCube) -> tuple[PersonTrack, ...]:
-    """Tracks of people; empty for a single frame or too few moving Doppler bins."""
-    if len(cube.values) < 2 or moving_doppler(cube).sum() < 2:
-        return ()
-    return tuple(track_people(point_cloud(cube, moving_only=True), cube.grid.frame_time_s))
+def clear_spectrogram(found: MicroDoppler | None) -> MicroDoppler | None:
+    """The spectrogram; None if it shows only noise."""
+    return found if found is not None and found.power.max() > MIN_CONTRAST * np.median(found.power) else None
 
 
-def _static_share(cube: RadarCube) -> float:
-    """Energy in the Doppler bins of static clutter relative to the total."""
-    power = range_doppler_power(cube).sum(axis=(0, 1))
-    total = float(power.sum())
-    return float(power[~moving_doppler(cube)].sum()) / total if total > 0 else 0.0
+def _may_show_people(cube: RadarCube) -> bool:
+    """Whether there are several frames and enough moving Doppler bins."""
+    return len(cube.values) >= 2 and bool(moving_doppler(cube).sum() >= 2)
 
 
 def _fastest(spectrogram: MicroDoppler) -> float:

@@ -32,6 +32,7 @@ from mmweaver.io.dca1000 import IQ_ORDERS, LANES, adc_of_words, words_of
 from mmweaver.signal.windows import hann
 
 MIRRORED_DB = 8.0  # excess energy in the last quarter of the beat frequencies over the first
+GATHERED = 0.98  # ratio of occupied range bins below which another pairing of I and Q is possible
 LIKELIER_DB = 6.0  # minimum advantage over any other order for or against I Q I Q
 SCATTERED = 0.75  # ratio of occupied range bins below which the other lane layout is more likely
 WRITTEN = {"iq": "I I Q Q", "qi": "Q Q I I", "interleaved": "I Q I Q"}
@@ -80,8 +81,15 @@ def wrong_iq_order(adc: AdcCube, iq_order: str | None) -> Iterator[str]:
         return
     adc = _alone(adc)
     orders = IQ_ORDERS if adc.config.lvds_lanes != LANES else IQ_ORDERS[:2]
+    if "interleaved" in orders:  # the wrong pairing of words doubles each echo
+        two = replace(adc, samples=adc.samples[:2])
+        pairs, single = (_occupied(_again(two, iq_order, order)) for order in ("iq", "interleaved"))
+        orders = tuple(
+            order for order in orders if order == iq_order or (single < GATHERED * pairs) == (order == "interleaved")
+        )
     mirrored = {order: mirrored_db(_again(adc, iq_order, order)) for order in orders}
-    first, second, *_ = sorted(orders, key=lambda order: mirrored[order])
+    first, *others = sorted(orders, key=lambda order: mirrored[order])
+    second = others[0] if others else first
     is_likelier = mirrored[first] < mirrored[second] - LIKELIER_DB
     if first == "interleaved" and not is_likelier:
         first = second

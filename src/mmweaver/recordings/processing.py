@@ -1,6 +1,6 @@
 """Processing of recordings to the same cube, points, files and pictures as generated signals."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -20,11 +20,14 @@ from mmweaver.io.radar_file import announced_frames, load_firmware
 from mmweaver.io.result_folder import META_VERSION, file_digest, radar_meta, save_results
 from mmweaver.recordings.analysis import RecordingAnalysis, analyse_recording
 from mmweaver.recordings.dca_bin import loss_sentences
+from mmweaver.recordings.long_recording import Blocks, LongRecording, Progress, block_frames, is_long
 from mmweaver.recordings.plausibility import implausible
 from mmweaver.recordings.read_recording import Recording, as_config, read_recording, without_board
+from mmweaver.recordings.recording_pieces import RecordingPieces
 from mmweaver.scene.photo.capture_photo import photo_folder, photo_times_s
 from mmweaver.signal.cube import remove_static
 from mmweaver.signal.detection import check_points, detect, needs_adc, substitutes
+from mmweaver.signal.windows import MIN_HANN_LOOPS
 from mmweaver.viz.feature_page import draw_micro_doppler, draw_people, draw_slow_time
 from mmweaver.viz.figure_data import FigureData
 from mmweaver.viz.preview import PREVIEWS
@@ -40,6 +43,7 @@ class ProcessedRecording:
     meta: dict[str, Any]
     stages: Stages
     analysis: RecordingAnalysis | None = None
+    resumed: int = 0  # blocks that an interrupted run had finished
 
     def save(
         self, out: str | Path, *, overwrite: bool = False, extra: dict[str, str] | None = None, pictures: bool = True
@@ -101,6 +105,8 @@ def process_recording(
     analyse: bool = True,
     strict: bool = False,
     stages: Stages | None = None,
+    work: Path | None = None,
+    progress: Progress | None = None,
     **reading: Any,
 ) -> ProcessedRecording:
     """Reads a recording and computes its range-Doppler cube and point cloud.
@@ -116,6 +122,9 @@ def process_recording(
         strict: Whether samples that disagree with the settings (`recordings.plausibility`) are refused instead of
             reported in the meta. Default: False.
         stages: Timer of the stages. Default: a new one.
+        work: Folder for the blocks of a long recording, which then takes bounded memory and continues after an
+            interruption; the caller deletes it once the result is saved. Default: everything in memory.
+        progress: Called with frames done and all frames of a long recording.
         **reading: `range_m`, `range_bins`, `layout`, `axes`, `iq_order` and `tx_order` of `read_recording`.
 
     Returns:
@@ -130,23 +139,110 @@ def process_recording(
     if radar is not None:  # refuse an unsupported detector before reading samples
         check_points(points, as_config(radar))
         _firmware(points, None if isinstance(radar, RadarConfig) else str(radar))
+    steps = _Steps(points=points, static_removal=static_removal, board=made_by, strict=strict, analyse=analyse)
+    if work is not None:
+        pieces = RecordingPieces(path, radar, **reading)
+        if pieces.first is not None and pieces.first.adc is not None and steps.is_by_frame(pieces):
+            return _process_long(pieces, steps, stages, work, progress or (lambda done, total: None), reading)
     with stages("read the recording"):
-        recording = read_recording(path, radar, **reading)
-        if made_by is not None:
-            recording = without_board(recording, made_by)
-        check_points(points, recording.config)
-        if recording.adc is None and points != "firmware" and needs_adc(points):
-            raise InputError(f"{path} holds a cube, but --points {points} needs raw samples; give the raw recording")
-        firmware = _firmware(points, recording.radar_source)
+        recording = steps.corrected(read_recording(path, radar, **reading))
     with stages("range, Doppler, antennas"):
         whole = recording.cube
         cube = remove_static(whole, static_removal)
         warnings = _warnings(recording, strict)
     with stages("point cloud"):
-        cloud = detect(cube, recording.adc if static_removal == "none" else None, points, firmware)
+        cloud = steps.points_of(recording, cube)
     with stages("movement, people"):
         analysis = analyse_recording(whole, recording.adc) if analyse else None
-    meta = {
+    meta = _meta(recording, cube, steps, warnings, analysis)
+    return ProcessedRecording(adc=recording.adc, cube=cube, points=cloud, meta=meta, stages=stages, analysis=analysis)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Steps:
+    """Choices of a processing."""
+
+    points: str
+    static_removal: str
+    board: Board | None
+    strict: bool
+    analyse: bool
+
+    def corrected(self, found: Recording) -> Recording:
+        """The recording without the errors of its board. Raises InputError if the detector does not suit it."""
+        found = found if self.board is None else without_board(found, self.board)
+        check_points(self.points, found.config)
+        if found.adc is None and self.points != "firmware" and needs_adc(self.points):
+            raise InputError(
+                f"{found.path} holds a cube, but --points {self.points} needs raw samples; give the raw recording"
+            )
+        return found
+
+    def points_of(self, found: Recording, cube: RadarCube) -> PointCloud:
+        """Points of a cube, with its samples where static clutter stays in."""
+        firmware = _firmware(self.points, found.radar_source)
+        return detect(cube, found.adc if self.static_removal == "none" else None, self.points, firmware)
+
+    def finish(self, found: Recording) -> tuple[RadarCube, PointCloud]:
+        """Cube and points of a block."""
+        cube = remove_static(found.cube, self.static_removal)
+        return cube, self.points_of(found, cube)
+
+    def is_by_frame(self, pieces: RecordingPieces) -> bool:
+        """Whether a recording is long, and each frame of its result follows from that frame alone."""
+        assert pieces.first is not None
+        config = pieces.first.config
+        own = self.static_removal in ("none", "mean_chirp") or config.num_loops >= MIN_HANN_LOOPS
+        return self.static_removal != "mean_frame" and own and is_long(config, pieces.num_frames)
+
+
+def _process_long(
+    pieces: RecordingPieces,
+    steps: _Steps,
+    stages: Stages,
+    work: Path,
+    progress: Progress,
+    reading: dict[str, Any],
+) -> ProcessedRecording:
+    """Processes a recording block by block, see `recordings.long_recording`."""
+    assert pieces.first is not None
+    first = steps.corrected(pieces.recording(slice(0, block_frames(pieces.first.config))))
+    files = {name: [str(one), one.stat().st_mtime_ns, one.stat().st_size] for name, one in first.files.items()}
+    identity = {"files": files, "radar": first.config.to_json(), "reading": reading, "steps": str(steps)}
+    blocks = Blocks(
+        read=lambda frames: steps.corrected(pieces.recording(frames)),
+        finish=steps.finish,
+        num_frames=pieces.num_frames,
+        analyse=steps.analyse,
+    )
+    with stages("range, Doppler, points"):
+        warnings = _warnings(replace(first, lost_share=None), steps.strict)
+        long = LongRecording(work, blocks, identity)
+        long.run(progress)
+        cube, cloud = long.cube(first.cube), long.points()
+        assert cloud is not None
+    lost, clock_s = long.column("lost_share"), long.column("frame_clock_s")
+    if lost is not None:
+        warnings = _refused_if(steps.strict, [*warnings, *loss_sentences(lost)], first.path)
+    packets = None if first.packets is None else replace(first.packets, frame_time_s=clock_s)
+    with stages("movement, people"):
+        analysis = long.analysis(cube) if steps.analyse else None
+    whole = replace(first, lost_share=lost, packets=packets)
+    meta = _meta(whole, cube, steps, warnings, analysis)
+    return ProcessedRecording(
+        adc=None, cube=cube, points=cloud, meta=meta, stages=stages, analysis=analysis, resumed=long.resumed_from
+    )
+
+
+def _meta(
+    recording: Recording,
+    cube: RadarCube,
+    steps: _Steps,
+    warnings: list[str],
+    analysis: RecordingAnalysis | None,
+) -> dict[str, Any]:
+    """Content of meta.json."""
+    return {
         "schema_version": META_VERSION,
         "made_by": "mmweaver process",
         "version": __version__,
@@ -154,18 +250,21 @@ def process_recording(
         "iq_order": recording.iq_order,
         "tx_order": cube.config.tx_order,
         "axes": recording.axes,
-        "points": points,
-        "static_removal": static_removal,
+        "points": steps.points,
+        "static_removal": steps.static_removal,
         **_board_metas(recording),
         "warnings": warnings,
         "analysis": None if analysis is None else analysis.meta(),
-        "firmware": firmware,
+        "firmware": _firmware(steps.points, recording.radar_source),
         **radar_meta(cube.config),
         "inputs": {name: _digest(file) for name, file in recording.files.items()},
         **({} if recording.packets is None else _packets_meta(recording.path, recording.packets)),
-        "assumed": [*_assumptions(recording), *recording.config.notes, *substitutes(points, firmware)],
+        "assumed": [
+            *_assumptions(recording),
+            *recording.config.notes,
+            *substitutes(steps.points, _firmware(steps.points, recording.radar_source)),
+        ],
     }
-    return ProcessedRecording(adc=recording.adc, cube=cube, points=cloud, meta=meta, stages=stages, analysis=analysis)
 
 
 def _board_metas(recording: Recording) -> dict[str, Any]:

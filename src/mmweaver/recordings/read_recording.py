@@ -25,6 +25,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.range_window import chosen_range
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
 from mmweaver.core.safe_files.regular_files import check_exists
+from mmweaver.core.safe_files.safe_arrays import read_npy
 from mmweaver.core.shapes import LostShare
 from mmweaver.io.capture_folder import find_capture
 from mmweaver.io.capture_std import PACKETS, RADAR, is_capture, read_radar_capture
@@ -323,7 +324,7 @@ def _read_infineon(folder: Path, reading: RawReading, frames: slice) -> Recordin
     adc = read_infineon(folder, None if reading.radar is None else as_config(reading.radar), frames)
     files = {"recording": folder / SAMPLES, "radar": folder / SETTINGS}
     found = Recording(path=folder, files=files, config=adc.config, adc=adc, axes=AXES, radar_source=str(files["radar"]))
-    return replace(found, first_frame=frames.start or 0)
+    return replace(found, first_frame=frames.start or 0, num_frames=len(read_npy(folder / SAMPLES, mapped=True)))
 
 
 def _read_cube(path: Path, radar: str | Path | RadarConfig | None, mapped: bool) -> Recording:

@@ -6,9 +6,11 @@ from typing import Any
 
 from mmweaver.core.records import RadarCube
 from mmweaver.core.safe_files.safe_arrays import read_npy
+from mmweaver.io.capture_folder import find_capture
 from mmweaver.io.capture_std import is_capture
+from mmweaver.io.infineon import infineon_folder
 from mmweaver.io.stream_folder import is_stream, num_frames_of_stream
-from mmweaver.recordings.read_recording import Recording, read_recording
+from mmweaver.recordings.read_recording import CUBE, Recording, read_recording
 
 
 class RecordingPieces:
@@ -30,17 +32,17 @@ class RecordingPieces:
             InputError: If the first frame cannot be read with these settings.
         """
         self.path, self._radar, self._how = Path(path), radar, how
-        self._in_part = self._is_read_in_part(how.get("axes"))
-        first = self._recording(slice(0, 1)) if self._in_part else None
-        self._first, self._num_frames = (None, None) if first is None else (first.cube, first.num_frames)
+        self.in_part = self._is_read_in_part(how.get("axes"))
+        self.first = self.recording(slice(0, 1)) if self.in_part else None
+        self._first = None if self.first is None else self.first.cube
 
     @cached_property
     def num_frames(self) -> int:
         """Number of frames."""
         if self._first is None:
             return len(self._whole.values)
-        if self._num_frames is not None:
-            return self._num_frames
+        if self.first is not None and self.first.num_frames is not None:
+            return self.first.num_frames
         return num_frames_of_stream(self.path) if self.path.is_dir() else len(read_npy(self.path, mapped=True))
 
     @property
@@ -62,11 +64,12 @@ class RecordingPieces:
             InputError: If they cannot be read.
         """
         stretch = slice(frames.start, frames.stop)
-        if self._in_part:
-            return self._recording(stretch).cube
+        if self.in_part:
+            return self.recording(stretch).cube
         return self._whole.select(stretch)
 
-    def _recording(self, frames: slice) -> Recording:
+    def recording(self, frames: slice) -> Recording:
+        """Reads frames of a recording that is read in part."""
         return read_recording(self.path, self._radar, frames=frames, **self._how)
 
     @cached_property
@@ -77,5 +80,8 @@ class RecordingPieces:
         if self.path.suffix == ".npy":
             return axes is not None and axes.split(",")[0].strip() == "frame"
         if self.path.is_dir():
-            return is_stream(self.path) or is_capture(self.path)
+            if (self.path / CUBE).is_file():
+                return False
+            is_board = infineon_folder(self.path) is not None or find_capture(self.path) is not None
+            return is_stream(self.path) or is_capture(self.path) or is_board
         return self.path.is_file() and self.path.suffix.lower() != ".npz"

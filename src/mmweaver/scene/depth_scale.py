@@ -22,12 +22,12 @@ from mmweaver.scene.photo.picture_files import depth_in_metres
 # name: metres per count, data sets and cameras that use it, and how common it is
 UNITS: dict[str, tuple[float, str, float]] = {
     "mm": (1e-3, "millimetres", 0.7),
-    "tum": (1 / 5000, "5000 counts a metre: TUM RGB-D, ICL-NUIM", 0.1),
-    "replica": (1 / 6553.5, "6553.5 counts a metre: Replica of NICE-SLAM", 0.04),
+    "tum": (1 / 5000, "5000 counts a metre: TUM RGB-D, ICL-NUIM", 0.05),
+    "replica": (1 / 6553.5, "6553.5 counts a metre: Replica of NICE-SLAM", 0.05),
     "kitti": (1 / 256, "256 counts a metre: KITTI, VOID", 0.05),
-    "4000": (1 / 4000, "4000 counts a metre", 0.02),
-    "10000": (1e-4, "0.1 mm", 0.03),
-    "cm": (1e-2, "centimetres", 0.02),
+    "4000": (1 / 4000, "4000 counts a metre", 0.05),
+    "10000": (1e-4, "0.1 mm", 0.05),
+    "cm": (1e-2, "centimetres", 0.05),
 }
 KINDS, ROTATED = ("z", "ray", "disparity"), "sunrgbd"
 NORMAL_M = 2.5  # median depth at which the room is looked at before its unit is known

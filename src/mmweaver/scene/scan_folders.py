@@ -163,7 +163,7 @@ def _upright_pose(folder: Path, kind: str, picture: Path, turns: int) -> Pose:
 
 def _camera(frame: ScanFrame) -> CameraIntrinsics:
     (height, width), (fx, fy, cx, cy) = frame.rgb.shape[:2], map(float, frame.lens)
-    if not (0.2 * width < fx < 20 * width and 0.5 < fx / fy < 2 and 0 < cx < width and 0 < cy < height):
+    if not (0.2 * width < fx < 20 * width and 0.5 * fy < fx < 2 * fy and 0 < cx < width and 0 < cy < height):
         raise InputError(f"no camera of {width} x {height} pixels has fx {fx:g}, fy {fy:g}, cx {cx:g}, cy {cy:g}")
     return CameraIntrinsics(fx=fx, fy=fy, cx=cx, cy=cy, width=width, height=height)
 

@@ -60,17 +60,67 @@ def micro_doppler(adc: AdcCube, *, window_loops: int | None = None) -> MicroDopp
         raise InputError(
             f"radar {config.name!r} has {config.num_loops} loops per frame, too few for a micro-Doppler spectrum"
         )
-    still = adc.samples.mean(axis=(0, 1), dtype=np.complex128).astype(np.complex64) if runs_on else None
-    chirps, first_bin = _moving_chirps(adc, still)  # (frame, loop, antenna, range)
-    frames, loops = chirps.shape[:2]
-    if runs_on:
-        chirps = chirps.reshape(1, frames * loops, *chirps.shape[2:])
+    if not runs_on:
+        span = moving_bins(chirp_levels(adc))
+        return spectrogram_of_frames(adc, width, span, frame_powers(adc, width, span))
+    still = adc.samples.mean(axis=(0, 1), dtype=np.complex128).astype(np.complex64)
+    span = moving_bins(chirp_levels(adc, still))
+    chirps = np.concatenate([block[..., span] for block in _profiles(adc, still)])
+    chirps = chirps.reshape(1, -1, *chirps.shape[2:])
     power = np.stack(
         [one.sum(axis=2) for one in _window_powers(chirps, width, max(1, width // OVERLAP))], 1, dtype=np.float64
     )
-    bins = np.array([first_bin, first_bin + chirps.shape[-1] - 1])
-    frame_s = np.arange(len(chirps)) * config.frame_period_s
+    return spectrogram_of_frames(adc, width, span, power)
+
+
+def window_loops_of(config: RadarConfig) -> int | None:
+    """Loops of a window that stays within a frame; None if a frame is too short or windows continue across frames."""
+    width = min(config.num_loops, MAX_WINDOW)
+    runs_on = config.frame_period_s - config.active_time_s < 0.5 * config.loop_period_s
+    return None if runs_on or width < MIN_HANN_LOOPS else width
+
+
+def frame_powers(adc: AdcCube, width: int, span: slice) -> Float[np.ndarray, "frame window doppler"]:
+    """Power of the windows within each frame, mean of the antennas, summed over the range bins of `span`."""
+    parts = [
+        np.stack([one.sum(axis=2) for one in _window_powers(block[..., span], width, max(1, width // OVERLAP))], 1)
+        for block in _profiles(adc, None)
+    ]
+    return np.concatenate(parts).astype(np.float64)
+
+
+def spectrogram_of_frames(
+    adc: AdcCube, width: int, span: slice, power: Float[np.ndarray, "frame window doppler"]
+) -> MicroDoppler:
+    """Spectrogram of the powers of all frames.
+
+    Args:
+        adc: Samples of any frames, for the radar.
+        width: Loops of a window.
+        span: Range bins that hold movement, of those that the radar keeps.
+        power: Powers of all frames, or of one row of windows across them.
+    """
+    config = adc.config
+    bins = config.first_range_bin + np.array([span.start, span.stop - 1])
+    frame_s = np.arange(len(power)) * config.frame_period_s
     return _spectrogram(power, frame_s, config, bins * config.range_resolution_m)
+
+
+def chirp_levels(adc: AdcCube, still: np.ndarray | None = None) -> Float[np.ndarray, "block range"]:
+    """Energy of the range profiles without clutter, of each FRAMES_A_BLOCK frames.
+
+    Args:
+        adc: Samples.
+        still: Clutter (slot, rx, sample). Default: the mean chirp of each frame.
+    """
+    return np.stack([(np.abs(block) ** 2).sum(axis=(0, 1, 2)) for block in _profiles(adc, still)])
+
+
+def moving_bins(levels: Float[np.ndarray, "block range"]) -> slice:
+    """Range bins that hold movement, from the energy of all blocks."""
+    level = sum(levels)
+    near = np.flatnonzero(level >= np.max(level) * 10 ** (-SIGNAL_DB / 10))
+    return slice(int(near[0]), int(near[-1]) + 1)
 
 
 def cube_spectrogram(cube: RadarCube, width: int, hop: int) -> Float[np.ndarray, "frame window range doppler"]:
@@ -126,8 +176,8 @@ def _spectrogram(power: np.ndarray, frame_s: np.ndarray, config: RadarConfig, ra
     )
 
 
-def _moving_chirps(adc: AdcCube, still: np.ndarray | None) -> tuple[np.ndarray, int]:
-    """Range profiles of every chirp (frame, loop, slot * rx, range) where something moves, and the first range bin.
+def _profiles(adc: AdcCube, still: np.ndarray | None) -> Iterator[np.ndarray]:
+    """Range profiles of every chirp without clutter, (frame, loop, slot * rx, range), block by block.
 
     `still` (slot, rx, sample) is subtracted; without it the mean chirp of each frame.
     """
@@ -135,13 +185,8 @@ def _moving_chirps(adc: AdcCube, still: np.ndarray | None) -> tuple[np.ndarray, 
     window = hann(config.num_samples)
     weight = (window / window.sum()).astype(np.float32)
     kept = slice(config.first_range_bin, config.first_range_bin + config.num_range_bins)
-    blocks = []
     for start in range(0, len(adc.samples), FRAMES_A_BLOCK):
         part = AdcCube(samples=adc.samples[start : start + FRAMES_A_BLOCK], config=config, scale=adc.scale)
         moving = remove_static_adc(part).samples if still is None else part.samples - still
         profile = np.asarray(fft.fft(moving * weight, axis=-1))[..., kept]
-        blocks.append(profile.reshape(*profile.shape[:2], -1, profile.shape[-1]))
-    level = sum((np.abs(block) ** 2).sum(axis=(0, 1, 2)) for block in blocks)
-    near = np.flatnonzero(level >= np.max(level) * 10 ** (-SIGNAL_DB / 10))
-    some = slice(int(near[0]), int(near[-1]) + 1)
-    return np.concatenate([block[..., some] for block in blocks]), config.first_range_bin + some.start
+        yield profile.reshape(*profile.shape[:2], -1, profile.shape[-1])

@@ -17,8 +17,9 @@ HEADERS_S = 10.0
 READ_S = 60.0
 BODY_PAUSE_S = 15.0  # longest time without a byte of a body
 BODY_S, BODY_BYTES_A_SECOND = 30.0, 100_000  # a body of n bytes has BODY_S + n / BODY_BYTES_A_SECOND
-MAX_WAITING = 64  # connections whose first request has not come
-MAX_OPEN = 400
+MAX_WAITING = 200  # connections whose first request has not come
+MAX_OPEN = 800
+GRACE_S = 2.0  # a younger connection is not closed for others: its request may be on the way
 LINGER_BYTES, LINGER_S = 4_000_000, 5.0
 
 
@@ -31,7 +32,8 @@ class BoundedProtocol(H11Protocol):
         self.opened_s, self.lingered = time.monotonic(), 0
         self.deadline = self.loop.call_later(HEADERS_S, self._end_without_request)
         self.reading: asyncio.TimerHandle | None = None
-        others = [one for one in self.connections if isinstance(one, BoundedProtocol) and one is not self]
+        before = self.opened_s - GRACE_S
+        others = [one for one in self.connections if isinstance(one, BoundedProtocol) and one.opened_s < before]
         waiting = [one for one in others if one.is_waiting]
         if len(waiting) >= MAX_WAITING:
             _close_oldest(waiting)

@@ -254,7 +254,9 @@ class StudioServer:
         with session.answering(), self.service.sessions.uploading(int(length)):
             folder = Path(mkdtemp(prefix="upload-", dir=session.folder))
             try:
-                return JSONResponse(await self._taken(request, session, folder))
+                found = await self._taken(request, session, folder)
+                self.service.sessions.keep_within_memory()
+                return JSONResponse(found)
             finally:  # what was read is in memory
                 if not session.needs(folder):
                     shutil.rmtree(folder, ignore_errors=True)

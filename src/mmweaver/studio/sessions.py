@@ -28,9 +28,10 @@ from mmweaver.viz.points_playback import point_log_playback
 from mmweaver.viz.sequence import Playback, make_playback
 from mmweaver.weaver.generation import Generation, Room
 
-MAX_SESSIONS = 100
+MAX_SESSIONS = 1000
 MAX_RESULTS = 6  # per session; the oldest are dropped first
 MAX_RESULT_BYTES = 1_000_000_000  # cubes and samples of all sessions
+ROOM_BYTES = 20_000_000  # about what a room that was brought takes
 MAX_BROUGHT = 8  # rooms, radars, boards, motions and photos of a session, of each kind; the oldest are dropped first
 MAX_UPLOAD_BYTES = 1_000_000_000  # of all uploads that are being received or read
 MAX_SOCKETS = 4  # open WebSockets of a session
@@ -152,8 +153,16 @@ class Session:
             self.forget_oldest()
         return name
 
+    @property
+    def num_bytes(self) -> int:
+        """Memory of results and rooms in bytes."""
+        return sum(one.num_bytes for one in self.results.values()) + ROOM_BYTES * len(self.rooms)
+
     def forget_oldest(self) -> None:
-        """Drops the oldest result; the pinned one is the last to go."""
+        """Drops the oldest result; the pinned one is the last to go, before rooms."""
+        if not self.results:
+            self.rooms.pop(next(iter(self.rooms)))
+            return
         self.results.pop(next((name for name in self.results if name != self.pinned), next(iter(self.results))))
 
     def result(self, name: str) -> Result:
@@ -268,7 +277,7 @@ class Sessions:
         """Drops the oldest results of the largest sessions until all fit."""
         with self._lock:
             while True:
-                sizes = {one: sum(r.num_bytes for r in one.results.values()) for one in self._open.values()}
+                sizes = {one: one.num_bytes for one in self._open.values()}
                 if sum(sizes.values()) <= MAX_RESULT_BYTES or not sizes:
                     return
                 largest = max(sizes, key=lambda one: sizes[one])

@@ -165,7 +165,7 @@ def _room(capture: Capture, config: RadarConfig, frames: int) -> RecordedRoom:
         kind=SPLIT,
         layout=0,
         lighting="",
-        photo=capture.photo,
+        given_photo=capture.photo,
         static=values[:, :, config.num_loops // 2].mean(axis=0, dtype=np.complex128).astype(np.complex64),
         joints_m=joints,
         joint_velocity_mps=velocity,

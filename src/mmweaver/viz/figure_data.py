@@ -27,6 +27,7 @@ from mmweaver.viz.theme import PowerScale, evenly_spaced
 MAX_FRAMES = 100  # longer sequences are thinned out
 SLOW_OVER_NOISE = 10.0  # minimum power of changes between frames over the noise
 SLOW_OVER_FAST = 316.0  # and over motion within frames: 25 dB (a walk has -7 to 14, waving 19, standing 38)
+MOVING_BINS = 0.75  # slower points are static echoes in a neighbouring Doppler bin: 7 % of them lie near the body
 BELOW_FLOOR_M = 0.15  # points deeper below the floor are multipath or noise
 Power = Float[Array, "frame range column"]
 RangeAngle = Float[Array, "range column"]
@@ -67,6 +68,15 @@ class FigureData:
     def shown_points(self) -> PointCloud:
         """The points of the shown frames."""
         return self.points.select(np.isin(self.points.frame, self.frames))
+
+    @cached_property
+    def moving_points(self) -> PointCloud:
+        """Shown points above the floor that are faster than MOVING_BINS Doppler bins; all points of slow motion."""
+        points = self.shown_points
+        if self.is_slow:
+            return points
+        slowest_mps = MOVING_BINS * self.cube.config.velocity_resolution_mps
+        return points.select((np.abs(points.radial_velocity_mps) >= slowest_mps) & ~self.is_below_floor)
 
     @cached_property
     def shown_poses(self) -> tuple[PoseSequence, ...]:

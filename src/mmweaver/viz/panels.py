@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.skeleton import joint
 from mmweaver.core.virtual_array import has_elevation
@@ -34,7 +35,8 @@ if TYPE_CHECKING:
 SHOWN_POSES = 7  # poses whose joints are drawn from the side, and bodies of one person in the photo
 SHOWN_POSES_OF_MANY = 3  # bodies per person of several people
 PHOTO_WIDTH_PX = 720  # about the width of the photo on the page
-STATIC_COLOUR, MOVING_COLOUR, GHOST_COLOUR = "#8a5a00", "#0b7da3", "#b6bcc4"
+STATIC_COLOUR, MOVING_COLOUR = "#8a5a00", "#0b7da3"
+MAX_BODY_SHARE, APART_M = 0.9, 0.25  # of the picture's height, and least distance between two bodies of a person
 NARROWEST_MPS, MOVING_DB = 0.02, 50.0  # minimum half width of a slow-time velocity axis, and shown range below a peak
 DISPLACEMENT_SPAN, DISPLACEMENT_NAME = 1.15, 0.22
 LEGEND_SHARE = 0.3  # space above the scale for the legend, so that no curve crosses it
@@ -263,21 +265,27 @@ def _draw_profiles(
     axes.legend()
 
 
-# points: coloured by radial velocity; those below the floor are crosses, for nothing stands there ---------------------
+# points: those that move, coloured by radial velocity; static ones are furniture and walls ----------------------------
 def draw_points_top(axes: "Axes", view: FigureData) -> None:
-    """All detections from above."""
+    """Moving detections from above."""
     reach_m = view.range_edges_m[1]
-    points = view.shown_points
+    points = view.moving_points
     _scatter(axes, view, points.x_m, points.y_m)
     _truth(axes, view.shown_poses, _path, "line: pelvis", "upper right", on_white=True)
     axes.set(xlim=(-0.9 * reach_m, 0.9 * reach_m), ylim=(0, reach_m))
     axes.set_aspect("equal", anchor="NW")
-    label_axes(axes, f"Points from above ({len(points.frame)})", "right (m)", "ahead (m)", grid=True)
+    label_axes(
+        axes,
+        f"Moving points ({len(points.frame)} of {len(view.shown_points.frame)})",
+        "right (m)",
+        "ahead (m)",
+        grid=True,
+    )
 
 
 def draw_points_side(axes: "Axes", view: FigureData) -> None:
-    """All detections from the side; over time or velocity if the array has no elevation."""
-    points, reach_m = view.shown_points, view.range_edges_m[1]
+    """Moving detections from the side; over time or velocity if the array has no elevation."""
+    points, reach_m = view.moving_points, view.range_edges_m[1]
     if not has_elevation(view.cube.config):
         if view.is_single:
             across, limits, words = points.radial_velocity_mps, view.velocity_edges_mps, ("by velocity", VELOCITY)
@@ -286,7 +294,7 @@ def draw_points_side(axes: "Axes", view: FigureData) -> None:
             limits, words = view.time_edges_s, ("over time", "time (s)")
         _scatter(axes, view, across, points.range_m)
         axes.set(xlim=limits, ylim=(0, reach_m))
-        label_axes(axes, f"Points {words[0]} (no elevation)", words[1], "range (m)", grid=True)
+        label_axes(axes, f"Moving points {words[0]}", words[1], "range (m)", grid=True)
         return
     _scatter(axes, view, points.y_m, points.z_m)
 
@@ -300,9 +308,7 @@ def draw_points_side(axes: "Axes", view: FigureData) -> None:
     half_m = float(np.clip(1.1 * highest_m, 0.32 * reach_m, 0.45 * reach_m))
     axes.set(xlim=(0, reach_m), ylim=(-half_m, half_m))
     axes.set_aspect("equal", anchor="NW")
-    below = view.is_below_floor.sum()
-    ghosts = f" (x: {below} below the floor)" if below else ""
-    label_axes(axes, f"Points from the side{ghosts}", "ahead (m)", "up (m)", grid=True)
+    label_axes(axes, "Moving points, side", "ahead (m)", "up (m)", grid=True)
 
 
 def velocity_bar(axes: "Axes", view: FigureData) -> None:
@@ -315,7 +321,7 @@ def _velocities(view: FigureData) -> "ScalarMappable":
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
-    speed_mps = np.abs(view.shown_points.radial_velocity_mps)
+    speed_mps = np.abs(view.moving_points.radial_velocity_mps)
     moving_mps = speed_mps[speed_mps > MIN_SPEED_MPS]
     top_mps = float(np.percentile(moving_mps, 95)) if len(moving_mps) else MIN_SPEED_MPS
     return ScalarMappable(Normalize(-top_mps, top_mps), VELOCITY_MAP)
@@ -325,14 +331,25 @@ def _scatter(axes: "Axes", view: FigureData, across_m: np.ndarray, up_m: np.ndar
     """Weak detections are pale."""
     from matplotlib.colors import to_rgb
 
-    snr_db, below = view.shown_points.snr_db, view.is_below_floor
-    axes.scatter(across_m[below], up_m[below], s=8, linewidths=0.5, marker="x", color=GHOST_COLOUR)
+    snr_db = view.moving_points.snr_db
     rising = np.argsort(snr_db, kind="stable")
-    rising = rising[~below[rising]]
-    face: Any = _velocities(view).to_rgba(view.shown_points.radial_velocity_mps[rising])
+    face: Any = _velocities(view).to_rgba(view.moving_points.radial_velocity_mps[rising])
     face[:, 3] = np.clip((snr_db[rising] - 10) / 20, 0.2, 1.0)
     edge: Any = np.column_stack([np.tile(to_rgb(INK), (len(face), 1)), face[:, 3]])
     axes.scatter(across_m[rising], up_m[rising], s=12, linewidths=0.3, facecolors=face, edgecolors=edge)
+
+
+def _poses_in_photo(person: PoseSequence, aligned: AlignedPhoto, most: int) -> np.ndarray:
+    """Frames whose bodies fit the picture and do not cover each other; at least the one farthest away."""
+    places_m = person.joints_m[:, joint("pelvis")]
+    _, depth_m = aligned.project(places_m)
+    tallest_px = MAX_BODY_SHARE * aligned.photo.rgb.shape[0]
+    fits = depth_m * tallest_px >= aligned.photo.intrinsics.fy * person.height_m
+    chosen: list[int] = []
+    for frame in evenly_spaced(len(places_m), most):
+        if fits[frame] and all(np.linalg.norm(places_m[frame] - places_m[other]) > APART_M for other in chosen):
+            chosen.append(int(frame))
+    return np.array(chosen or [int(np.argmax(depth_m))])
 
 
 # photo --------------------------------------------------------------------------------------------------------------
@@ -349,8 +366,8 @@ def draw_photo(axes: "Axes", view: FigureData) -> None:
     times = ListedColormap(matplotlib.colormaps[TIME_MAP](np.linspace(0.25, 1, 128)))
     bodies = []
     for index, person in enumerate(people):
-        shown = evenly_spaced(len(person.time_s), SHOWN_POSES if len(people) == 1 else SHOWN_POSES_OF_MANY)
-        for body, share in zip(bodies_of(person, shown), np.linspace(0, 1, max(len(shown), 2)), strict=False):
+        shown = _poses_in_photo(person, aligned, SHOWN_POSES if len(people) == 1 else SHOWN_POSES_OF_MANY)
+        for body, share in zip(bodies_of(person, shown), shown / max(len(person.time_s) - 1, 1), strict=True):
             own = [
                 part * (0.5 + 0.5 * share) for part in to_rgb(person_colour(index, len(people)))
             ]  # brighter with time

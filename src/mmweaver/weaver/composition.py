@@ -1,5 +1,6 @@
 """The motion of a request in a room: composed, verified, and in a wider range window where the sentence needs it."""
 
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -25,6 +26,8 @@ from mmweaver.weaver.parsed_request import ParsedRequest, PersonRequest
 NEAREST_M, FARTHEST_M, MARGIN_M = 0.3, 12.0, 0.3  # of widened windows: limits, and beyond the body
 GAIN = 0.05  # less loss than this is not worth another window
 LOST_BY_ERROR = 10.0
+MAX_RECENT = 64  # compositions that are kept: matched draws try a sequence before it is generated
+_recent: deque[tuple[Scene, tuple[object, ...], tuple[Motion, ...]]] = deque(maxlen=MAX_RECENT)
 
 
 def compose_request(request: ParsedRequest, scene: Scene) -> tuple[Motion, ...]:
@@ -40,10 +43,20 @@ def compose_request(request: ParsedRequest, scene: Scene) -> tuple[Motion, ...]:
     Raises:
         InputError: If the room has no space for the motion, or, with `request.strict`, something is not done.
     """
-    recorded = None
     if not request.people:
         return ()
-    first = request.people[0]
+    key = (request.people, request.config, request.frames, request.seed, request.heading_rad, request.missing)
+    known = next((people for room, own, people in _recent if room is scene and own == key), None)
+    people = known if known is not None and request.motion is None else _composed(request, scene)
+    if known is None and request.motion is None:
+        _recent.append((scene, key, people))  # matched draws have tried what they generate
+    for person in people if request.strict else ():
+        check_done(person.plan.text, person.clauses)
+    return people
+
+
+def _composed(request: ParsedRequest, scene: Scene) -> tuple[Motion, ...]:
+    recorded, first = None, request.people[0]
     if request.motion is not None:
         clip = request.motion if first.height_m is None else request.motion.scaled_to(first.height_m)
         recorded = place_clip(
@@ -71,8 +84,6 @@ def compose_request(request: ParsedRequest, scene: Scene) -> tuple[Motion, ...]:
         farthest_m=request.config.farthest_bin_m,
         missing=request.missing,
     )
-    for person in people if request.strict else ():
-        check_done(person.plan.text, person.clauses)
     return tuple(_breathing(*pair) for pair in zip(people, request.people, strict=True))
 
 
@@ -118,8 +129,8 @@ def widened(request: ParsedRequest, scene: Scene) -> tuple[ParsedRequest, tuple[
     config = _narrowed(request.config, wide, more)
     (near, far), (old_near, old_far) = _window(config), _window(request.config)
     note = (
-        f"the range window is widened from {old_near:.2f} to {old_far:.2f} m to {near:.2f} to {far:.2f} m, which"
-        f" {request.text!r} needs in this room; --range sets it"
+        f"the range window is widened from {old_near:.2f} to {old_far:.2f} m to {near:.2f} to {far:.2f} m, which the"
+        " sentence needs in this room; --range sets it"
     )
     first = replace(more[0], assumptions=(*more[0].assumptions, note))
     return replace(request, config=config), (first, *more[1:])
@@ -187,7 +198,7 @@ def with_targets(room: Room, request: ParsedRequest) -> Room:
     if not request.things and not request.reflectors and not request.interferers:
         return room
     if request.reflectors and room.background is not None:
-        raise InputError("a background recording has its own echoes; leave out --reflector or --background")
+        raise InputError("a background recording has its own echoes; leave out the reflector or the background")
     things: list[Thing] = []
     for number, thing in enumerate(request.things):
         seed = int(stream(request.seed, "thing", number).integers(2**31))
@@ -223,6 +234,8 @@ def free_place(
 
 
 def _breathing(motion: Motion, person: PersonRequest) -> Motion:
-    """The motion with the breathing that the text asks for."""
+    """The motion with the breathing that the text asks for, and under the blanket that it names."""
     asked = Breathing(per_minute=person.breaths_per_minute, held_s=held_breaths(motion.plan.steps))
-    return motion if asked == Breathing() else replace(motion, pose=replace(motion.pose, breathing=asked))
+    if asked == Breathing() and not person.cover_db:
+        return motion
+    return replace(motion, pose=replace(motion.pose, breathing=asked, cover_db=person.cover_db))

@@ -23,7 +23,7 @@ from mmweaver.motion.language.timing import natural_s, repeated, schedule
 from mmweaver.motion.mocap.clip import MotionClip, check_lasts
 from mmweaver.motion.multi_person import MOST_PEOPLE
 from mmweaver.motion.people import check_subject
-from mmweaver.motion.physiology import HOLDING, breathing_rate_of
+from mmweaver.motion.physiology import HOLDING, breathing_rate_of, cover_of
 from mmweaver.motion.planning.missing import STAND_IN
 from mmweaver.motion.planning.targets import SHORTEST_PATH_M
 from mmweaver.motion.register_activity import load_activity_plugins
@@ -48,6 +48,7 @@ class PersonRequest:
     height_m: float | None = None
     subject: int | None = None  # number of the person
     breaths_per_minute: float | None = None
+    cover_db: float = 0.0  # two-way loss of a blanket
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -155,6 +156,7 @@ def parse(asked: Request, radar: RadarConfig, *, needs_adc: bool = False) -> Par
     if count is not None:
         _check_size(config, count, has_adc)
     acts, rates = zip(*map(breathing_rate_of, acts), strict=True)
+    acts, covers_db = zip(*map(cover_of, acts), strict=True)
     plans: list[MotionPlan | None] = [
         None if is_empty or (motion is not None and index == 0) else parsed_text(one, asked.parser)
         for index, one in enumerate(acts)
@@ -175,8 +177,11 @@ def parse(asked: Request, radar: RadarConfig, *, needs_adc: bool = False) -> Par
             height_m=None if height is None else float(height),
             subject=None if who is None else check_subject(who),
             breaths_per_minute=rate,
+            cover_db=cover_db,
         )
-        for text, plan, start, height, who, rate in zip(texts, plans, starts, heights, subjects, rates, strict=True)
+        for text, plan, start, height, who, rate, cover_db in zip(
+            texts, plans, starts, heights, subjects, rates, covers_db, strict=True
+        )
     )
     return ParsedRequest(
         people=() if is_empty else people,

@@ -111,6 +111,16 @@ def test_columns_of_radar_scan_have_ros_axes(tmp_path: Path):
     assert read_points(tmp_path / "plain.csv", axes="ros").y_m.tolist() == [3.0]
 
 
+def test_points_of_one_time_are_a_frame(tmp_path: Path):
+    """A log without frame numbers, whose NumFrame counts the points of a frame."""
+    rows = "1734208812351.2,1,0.09,0.87,0.68,-0.9\n1734208812351.2,2,0.10,0.84,0.69,-0.6\n"
+    rows += "1734208812407.9,1,0.1,0.9,0.7,0\n"
+    (tmp_path / "log.csv").write_text("Timestamp,NumFrame,X,Y,Z,Doppler\n" + rows)
+    cloud = read_points(tmp_path / "log.csv")
+    assert (cloud.frame.tolist(), cloud.num_frames) == ([0, 0, 1], 2)
+    assert cloud.y_m.tolist() == [0.87, 0.84, 0.9]
+
+
 def test_ros_bags_that_we_export_come_back(tmp_path: Path):
     """PointCloud2 in ROS's axes, by rosbags, whose writer is not ours."""
     pytest.importorskip("rosbags")

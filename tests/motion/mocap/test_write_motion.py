@@ -8,7 +8,7 @@ from mmweaver.core.records import PoseSequence
 from mmweaver.core.skeleton import PARENTS
 from mmweaver.motion.empty_floor import act_out
 from mmweaver.motion.mocap.read_motion import read_motion
-from mmweaver.motion.mocap.write_motion import write_amass, write_bvh
+from mmweaver.motion.mocap.write_motion import write_amass, write_bvh, write_humanml3d
 
 
 def walk() -> PoseSequence:
@@ -43,3 +43,14 @@ def test_amass_keeps_path_and_directions_of_bones(tmp_path: Path):
     assert np.abs(clip.joints_m[:, 0] - joints_m[:, 0]).max() < 1e-5
     limbs = [child - 1 for child, parent in enumerate(PARENTS) if parent in (1, 2, 4, 5, 16, 17, 18, 19)]
     assert angles_deg(clip.joints_m, joints_m)[:, limbs].max() < 0.01
+
+
+def test_humanml3d_keeps_the_motion_from_its_own_start(tmp_path: Path):
+    pose = walk()
+    write_humanml3d(tmp_path / "walk.npy", pose)
+    clip = read_motion(tmp_path / "walk.npy")
+    assert clip.fps == 20
+    length = np.linalg.norm(np.diff(clip.joints_m[:, 0, :2], axis=0), axis=1).sum()
+    truth = np.linalg.norm(np.diff(pose.joints_m[:, 0, :2], axis=0), axis=1).sum()
+    assert abs(length - truth) < 0.05 * truth
+    assert abs(clip.height_m - 1.0 * pose.height_m) < 0.12 * pose.height_m

@@ -1,15 +1,14 @@
 """Checks of arrays read from a file: dtype, shape, equal lengths, finite and plausible values."""
 
-from pathlib import Path
-
 import numpy as np
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.regular_files import Place
 
 _WORDS = {"f": "real numbers", "fiu": "real numbers", "iu": "whole numbers", "c": "complex numbers"}
 
 
-def real_numbers(path: Path | str, name: str, values: np.ndarray) -> np.ndarray:
+def real_numbers(path: Place | str, name: str, values: np.ndarray) -> np.ndarray:
     """Converts an array from a file to float64.
 
     Args:
@@ -29,7 +28,7 @@ def real_numbers(path: Path | str, name: str, values: np.ndarray) -> np.ndarray:
 class ArrayChecks:
     """Checks the arrays of one file; axes of the same name must have the same length in all of them."""
 
-    def __init__(self, path: Path | str):
+    def __init__(self, path: Place | str):
         self.path = path
         self._lengths: dict[str, tuple[int, str]] = {}
 

@@ -6,13 +6,17 @@ README_CHUNK_FORMAT.rst.
 """
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import zarr
 from zarr import codecs
+from zarr.core.buffer.cpu import Buffer
 from zarr.registry import register_codec
+from zarr.storage import MemoryStore
+
+from mmweaver.core.safe_files.packed_folder import PackedPath
+from mmweaver.core.safe_files.regular_files import Place
 
 MAX_TEXT_BYTES = 64 * 2**20
 
@@ -47,7 +51,7 @@ for _name, _codec in BOUNDED.items():
     register_codec(_name, _codec)
 
 
-def open_bounded(place: Path) -> Any:
+def open_bounded(place: Place) -> Any:
     """Opens a Zarr array read-only with bounded codecs.
 
     Args:
@@ -57,8 +61,17 @@ def open_bounded(place: Path) -> Any:
         The zarr.Array.
     """
     names = {f"codecs.{name}": f"{codec.__module__}.{codec.__qualname__}" for name, codec in BOUNDED.items()}
+    store: Any = place if not isinstance(place, PackedPath) else _packed_store(place)
     with zarr.config.set(names):
-        return zarr.open_array(place, mode="r", zarr_format=3)
+        return zarr.open_array(store, mode="r", zarr_format=3)
+
+
+def _packed_store(place: PackedPath) -> MemoryStore:
+    """Store over the mapped bytes of a packed folder: nothing is read before its chunk is."""
+    files = {one.relative_to(place).as_posix(): one.data() for one in place.files()}
+    arrays: dict[str, Any] = {name: np.frombuffer(data, np.uint8) for name, data in files.items()}
+    chunks: Any = {name: Buffer.from_array_like(array) for name, array in arrays.items()}
+    return MemoryStore(chunks, read_only=True)
 
 
 def _check_size(size: int | None, chunk_spec: Any) -> None:

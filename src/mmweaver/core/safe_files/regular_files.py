@@ -9,8 +9,10 @@ from io import BufferedReader
 from pathlib import Path
 
 from mmweaver.core.errors import InputError, one_line
+from mmweaver.core.safe_files.packed_folder import PackedPath
 
 MEGABYTE = 2**20
+Place = Path | PackedPath  # a path on disk or in a packed folder
 
 
 def check_exists(path: Path, what: str) -> None:
@@ -27,7 +29,7 @@ def check_exists(path: Path, what: str) -> None:
         raise InputError(f"{path} does not exist; give {what}")
 
 
-def check_regular(path: Path | str) -> int:
+def check_regular(path: Place | str) -> int:
     """Checks that a path is a regular file.
 
     Args:
@@ -39,6 +41,8 @@ def check_regular(path: Path | str) -> int:
     Raises:
         InputError: If it is missing, or a folder, FIFO, device or socket.
     """
+    if isinstance(path, PackedPath):
+        return len(path.data())
     try:
         found = Path(path).stat()
     except (OSError, ValueError) as error:
@@ -50,7 +54,7 @@ def check_regular(path: Path | str) -> int:
     return found.st_size
 
 
-def open_regular(path: Path | str) -> BufferedReader:
+def open_regular(path: Place | str) -> BufferedReader:
     """Opens a regular file for reading bytes; never blocks, as opening a FIFO would.
 
     Args:
@@ -63,6 +67,8 @@ def open_regular(path: Path | str) -> BufferedReader:
         InputError: If it is not a regular file or cannot be opened.
     """
     check_regular(path)
+    if isinstance(path, PackedPath):
+        return path.open()
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
     try:
         handle = os.open(path, flags)
@@ -74,7 +80,7 @@ def open_regular(path: Path | str) -> BufferedReader:
     raise InputError(f"cannot read {path}: it is no regular file; give a file")
 
 
-def read_bytes(path: Path | str, *, max_bytes: int) -> bytes:
+def read_bytes(path: Place | str, *, max_bytes: int) -> bytes:
     """Reads an entire regular file.
 
     Args:
@@ -101,7 +107,7 @@ def read_bytes(path: Path | str, *, max_bytes: int) -> bytes:
 
 
 @contextlib.contextmanager
-def foreign_errors(path: Path | str, what: str) -> Iterator[None]:
+def foreign_errors(path: Place | str, what: str) -> Iterator[None]:
     """Context that converts any exception of a decoding library to an InputError "PATH is `what`".
 
     Only library calls belong inside.
@@ -130,7 +136,7 @@ def foreign_errors(path: Path | str, what: str) -> Iterator[None]:
         raise InputError(f"{path} is {what.format(reason=_reason(error))}") from None
 
 
-def cannot_read(path: Path | str, error: Exception) -> str:
+def cannot_read(path: Place | str, error: Exception) -> str:
     """Message for a file that the operating system does not open."""
     reason = error.strerror if isinstance(error, OSError) and error.strerror else error
     return f"cannot read {path}: {reason}"

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.safe_files.regular_files import MEGABYTE, foreign_errors, read_bytes
+from mmweaver.core.safe_files.regular_files import MEGABYTE, Place, foreign_errors, read_bytes
 
 MAX_TEXT_BYTES = 64 * MEGABYTE
 MAX_JSON_BYTES = 16 * MEGABYTE
@@ -23,7 +23,7 @@ _TOML_WORDS = re.compile(
 MAX_DIGITS = 64  # of an integer; a float can represent its magnitude
 
 
-def read_text(path: Path | str, *, max_bytes: int = MAX_TEXT_BYTES, errors: str = "strict") -> str:
+def read_text(path: Place | str, *, max_bytes: int = MAX_TEXT_BYTES, errors: str = "strict") -> str:
     """Reads a UTF-8 text and drops a byte order mark.
 
     Args:
@@ -43,7 +43,7 @@ def read_text(path: Path | str, *, max_bytes: int = MAX_TEXT_BYTES, errors: str 
         raise InputError(f"{path} is no UTF-8 text (byte {error.start}); save it as plain text") from None
 
 
-def read_json(path: Path | str, *, max_bytes: int = MAX_JSON_BYTES) -> Any:
+def read_json(path: Place | str, *, max_bytes: int = MAX_JSON_BYTES) -> Any:
     """Reads a JSON file.
 
     Args:

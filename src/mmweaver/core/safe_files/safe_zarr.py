@@ -16,7 +16,8 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.core.optional_packages import need
 from mmweaver.core.safe_files.array_checks import ArrayChecks
-from mmweaver.core.safe_files.regular_files import MEGABYTE, check_regular, foreign_errors
+from mmweaver.core.safe_files.packed_folder import PackedPath
+from mmweaver.core.safe_files.regular_files import MEGABYTE, Place, check_regular, foreign_errors
 from mmweaver.core.safe_files.safe_text import read_json
 
 METADATA = "zarr.json"
@@ -53,7 +54,7 @@ class ZarrFolder:
         InputError: If it is not a group, or an array is damaged or claims far more than its files contain.
     """
 
-    def __init__(self, path: Path):
+    def __init__(self, path: Place):
         metadata = _metadata(path)
         if metadata.get("node_type") != "group" or not isinstance(metadata.get("attributes", {}), dict):
             raise InputError(f"{path} is no Zarr group (version 3); is it the right folder?")
@@ -63,7 +64,7 @@ class ZarrFolder:
         self._opened: dict[str, Any] = {}
         self._promises = {
             place.name: _promise(place, inner)
-            for place in sorted(file.parent for file in path.glob(f"*/{METADATA}"))
+            for place in _inner_folders(path)
             if (inner := _metadata(place)).get("node_type") == "array"
         }
         promised = sum(one.promised for one in self._promises.values())
@@ -73,6 +74,9 @@ class ZarrFolder:
 
     def __contains__(self, name: str) -> bool:
         return name in self._promises
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_opened": {}}
 
     def has_group(self, name: str) -> bool:
         """Whether the group contains a subgroup of that name."""
@@ -208,7 +212,7 @@ class ZarrFolder:
         return self._opened[name]
 
 
-def open_zarr(folder: Path | str) -> ZarrFolder:
+def open_zarr(folder: Place | str) -> ZarrFolder:
     """Opens a Zarr group.
 
     Args:
@@ -221,17 +225,24 @@ def open_zarr(folder: Path | str) -> ZarrFolder:
         InputError: If the folder is not a Zarr group, is damaged, or zarr is not installed.
     """
     need("dataset", "a data set", "zarr")
-    return ZarrFolder(Path(folder))
+    return ZarrFolder(Path(folder) if isinstance(folder, str) else folder)
 
 
-def _metadata(folder: Path) -> dict[str, Any]:
+def _inner_folders(path: Place) -> list[Any]:
+    """Folders of the arrays and groups directly below a group."""
+    if isinstance(path, PackedPath):
+        return sorted(one.parent for one in path.rglob(METADATA) if one.parent.parent == path)
+    return sorted(file.parent for file in path.glob(f"*/{METADATA}"))
+
+
+def _metadata(folder: Place) -> dict[str, Any]:
     content = read_json(folder / METADATA)
     if not isinstance(content, dict) or content.get("zarr_format") != 3:
         raise InputError(f"{folder / METADATA} is no metadata of Zarr (version 3); make the folder again")
     return content
 
 
-def _promise(place: Path, metadata: dict[str, Any]) -> ArrayPromise:
+def _promise(place: Place, metadata: dict[str, Any]) -> ArrayPromise:
     """Checks that the chunk layout is possible and that existing chunk files are regular files."""
     try:
         shape, chunk = _lengths(metadata["shape"]), _lengths(metadata["chunk_grid"]["configuration"]["chunk_shape"])
@@ -255,14 +266,15 @@ def _promise(place: Path, metadata: dict[str, Any]) -> ArrayPromise:
     return ArrayPromise(shape=shape, dtype=dtype, held=held)
 
 
-def _held(place: Path, counts: list[int]) -> int:
+def _held(place: Place, counts: list[int]) -> int:
     """Total size of the chunk files in bytes. Raises InputError if many are missing."""
     if math.prod(counts) > MAX_CHUNKS:
         raise InputError(f"{place} says {math.prod(counts)} chunks, more than {MAX_CHUNKS}; make it again")
     held = absent = 0
     for key in itertools.product(*map(range, counts)):
-        file = "/".join((str(place), "c", *map(str, key)))
-        if os.path.lexists(file):
+        inner = "/".join(("c", *map(str, key)))
+        file = place / inner if isinstance(place, PackedPath) else f"{place}/{inner}"
+        if file.is_file() if isinstance(file, PackedPath) else os.path.lexists(file):
             held += check_regular(file)
         else:
             absent += 1

@@ -40,6 +40,8 @@ def read_point_arrays(path: Path) -> LoggedCloud:
     if array.ndim not in (3, 4) or array.shape[-1] != COLUMNS or array.dtype.kind != "f":
         raise InputError(f"{path} holds {array.dtype} of shape {array.shape}; points are (frame, ..., 5): x, y, z,"
                          " Doppler, intensity")  # fmt: skip
+    if not array.size:
+        raise InputError(f"{path} is empty: its shape is {array.shape}")
     if array.nbytes > MAX_BYTES:
         raise InputError(f"{path} holds {array.nbytes / 1e9:.1f} GB; at most {MAX_BYTES / 1e9:.0f} GB are read at once")
     points = np.asarray(array, float).reshape(len(array), -1, COLUMNS)

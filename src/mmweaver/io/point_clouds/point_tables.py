@@ -6,7 +6,7 @@ Doppler, intensity as float64); Singh et al., RadHAR (text of ROS messages, x ah
 
 import csv
 import re
-from io import StringIO
+from array import array
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +22,7 @@ MAX_BYTES = 500 * MEGABYTE
 MAX_FRAME = 2**31
 ROS_NOTE = "x ahead and y to the left, ROS's axes, were turned to x right and y away"
 MMFI_COLUMNS = 5  # x, y, z, Doppler, intensity
+TIMES = ("timestamp", "time", "times", "timems")  # columns that count frames where no other does
 # column names of a CSV, reduced to letters and digits -> name here
 COLUMNS = {
     "frame": "frame",
@@ -38,6 +39,7 @@ COLUMNS = {
     "snrdb": "snr",
 }
 RADHAR_LINE = re.compile(rb"^(point_id|x|y|z|velocity|intensity): *(\S+)", re.MULTILINE)
+LINE = re.compile(r"[^\n]*\n|[^\n]+$")
 NUMBERED = re.compile(r"(\d+)")
 
 
@@ -57,15 +59,24 @@ def read_csv_points(path: Path) -> LoggedCloud:
         InputError: If a column is missing or a value is not a number.
     """
     text = read_text(path, max_bytes=MAX_BYTES)
+    rows = csv.reader(line[0] for line in LINE.finditer(text))  # one by one: a list of them takes 20 times the text
     with foreign_errors(path, "no CSV ({reason}); export it again"):
-        rows = list(csv.reader(StringIO(text)))
-    at = csv_columns(rows[0] if rows else [], str(path))
-    try:
-        table = np.array([[float(row[index]) for index in at.values()] for row in rows[1:] if row])
-    except (ValueError, IndexError):
-        raise InputError(f"{path} holds a line that is not a number in each column; leave it out") from None
-    column = dict(zip(at, table.reshape(-1, len(at)).T, strict=True))
-    place, is_ros = np.column_stack([column[axis] for axis in "xyz"]), _has_ros_axes(rows[0], rows[1:])
+        header = next(rows, [])
+    at = csv_columns(header, str(path))
+    names = [_plain(name) for name in header]
+    more = {} if "bearing" not in names else {"bearing": names.index("bearing")}
+    values, picked = array("d"), [*at.values(), *more.values()]
+    with foreign_errors(path, "no CSV ({reason}); export it again"):
+        try:
+            for row in rows:
+                if row:
+                    values.extend([float(row[index]) for index in picked])
+        except (ValueError, IndexError):
+            raise InputError(f"{path} holds a line that is not a number in each column; leave it out") from None
+    column = dict(zip([*at, *more], np.array(values).reshape(-1, len(picked)).T, strict=True))
+    if names[at["frame"]] in TIMES:  # points of one time are a frame
+        column["frame"] = np.cumsum(np.diff(column["frame"], prepend=column["frame"][:1]) != 0)
+    place, is_ros = np.column_stack([column[axis] for axis in "xyz"]), _has_ros_axes(names, column)
     return logged_cloud(
         _renumbered(path, column["frame"]),
         place[:, [1, 0, 2]] * [-1, 1, 1] if is_ros else place,
@@ -76,12 +87,11 @@ def read_csv_points(path: Path) -> LoggedCloud:
     )
 
 
-def _has_ros_axes(header: list[str], rows: list[list[str]]) -> bool:
+def _has_ros_axes(names: list[str], column: dict[str, np.ndarray]) -> bool:
     """Whether the columns are those of ti_mmwave_rospkg's RadarScan: its bearing says where x points."""
-    names = [_plain(name) for name in header]
-    if "bearing" not in names:
+    if "bearing" not in column:
         return {"pointid", "dopplerbin"} <= set(names)
-    x, y, bearing = (np.array([float(row[names.index(name)]) for row in rows if row]) for name in ("x", "y", "bearing"))
+    x, y, bearing = (column[name] for name in ("x", "y", "bearing"))
     off_ros, off_radar = (
         np.abs(np.abs(np.degrees(angle)) - np.abs(bearing)) for angle in (np.arctan2(y, x), np.arctan2(x, y))
     )
@@ -107,6 +117,9 @@ def csv_columns(header: list[str], place: str) -> dict[str, int]:
     """
     names = [COLUMNS.get(_plain(name)) for name in header]
     at = {name: index for index, name in enumerate(names) if name is not None}
+    by_time = [index for index, name in enumerate(header) if _plain(name) in TIMES]
+    if "frame" not in at and by_time:
+        at = {"frame": by_time[0], **at}
     if missing := [name for name in ("frame", "x", "y", "z", "velocity") if name not in at]:
         raise InputError(f"{place}: its first line must name Frame, X, Y, Z and Doppler; {missing[0]} is missing")
     return at

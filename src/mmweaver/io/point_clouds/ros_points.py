@@ -21,7 +21,7 @@ SUFFIXES, FOLDER = (".bag", ".db3", ".mcap"), "metadata.yaml"
 CLOUD, SCAN = "sensor_msgs/msg/PointCloud2", "RadarScan"
 TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}  # of PointField
 VELOCITY, INTENSITY, SNR = (
-    ("velocity", "doppler", "v", "radial_speed", "vel"),
+    ("velocity", "doppler", "v", "v_doppler_mps", "radial_speed", "vel"),
     ("intensity", "power"),
     ("snr", "snr_db"),
 )

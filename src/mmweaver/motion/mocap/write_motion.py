@@ -1,4 +1,4 @@
-"""Motions of 22 joints as files that other programs read: BVH (Blender, Unity, MotionBuilder) and AMASS (SMPL).
+"""Motions of 22 joints as files that other programs read: BVH (Blender, Unity), AMASS (SMPL) and HumanML3D.
 
 Joint angles follow from the joints: where a joint has several children, its rotation is the one that fits them best;
 where it has one, the smallest rotation that turns the rest pose's bone into the bone. Twist about a bone is not in the
@@ -15,6 +15,8 @@ from scipy.spatial.transform import Rotation
 
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.skeleton import JOINT_NAMES, NUM_JOINTS, PARENTS
+from mmweaver.motion.mocap.humanml3d_features import features_from_joints, y_up
+from mmweaver.motion.mocap.joint_arrays import FPS
 from mmweaver.motion.mocap.smpl import MEAN_OFFSET_M
 
 Array = np.ndarray
@@ -142,3 +144,17 @@ def write_amass(path: Path, pose: PoseSequence) -> None:
             gender=np.array("neutral"),
             mocap_framerate=np.array(_rate(pose)),
         )
+
+
+def write_humanml3d(path: Path, pose: PoseSequence) -> None:
+    """Writes a motion as HumanML3D's features, float32 (frame, 263), at 20 frames per second, not normalised.
+
+    Args:
+        path: The file.
+        pose: The motion, z up; its body is kept, where HumanML3D moves every recording onto one skeleton.
+    """
+    time_s = np.arange(pose.time_s[0], pose.time_s[-1], 1 / FPS)
+    flat = pose.joints_m.reshape(len(pose.time_s), -1)
+    joints = np.stack([np.interp(time_s, pose.time_s, column) for column in flat.T], axis=1)
+    with path.open("wb") as file:
+        np.save(file, features_from_joints(y_up(joints.reshape(-1, NUM_JOINTS, 3))).astype(np.float32))

@@ -34,6 +34,7 @@ _NEGLIGIBLE_M = 0.01  # smaller occlusion costs trigger no further tests
 # Maximum cost before the next attempt is made; attempt 2 abandons the room's seats.
 _ENOUGH_M = {1: 0.0, 2: REPORTED_PENETRATION_M}
 _ENOUGH_SEATED_M = 0.02  # the same of attempt 2 for sitters: few points are visible in a bed's side
+_SAME_LOSS = 0.01  # of a sentence: differences below it do not count
 _KEPT_M = 0.02  # the first placement is accepted at this clearance
 _WORTH_M = 0.003  # accuracy of estimates: smaller gains are not animated
 _SAME_SEAT_M = 0.02  # seats whose heights differ by less are equivalent
@@ -121,7 +122,8 @@ class _Ranking:
     def best_of(self, placements: Sequence[Placement], *, better_than: _Tested | None = None) -> _Tested:
         """The first clear placement, else the one of least cost, including `better_than`."""
         best = better_than
-        placements = sorted(placements, key=lambda placement: placement.invents_seat)  # stools last
+        least = min((placement.lost for placement in placements), default=0.0) + _SAME_LOSS
+        placements = sorted(placements, key=lambda one: (one.lost > least, one.invents_seat))  # stools last
         if best is None:
             best = self._animated(placements[0])
             if best.cost_m <= -_KEPT_M:
@@ -130,6 +132,8 @@ class _Ranking:
         animations = MAX_ANIMATED
         for estimate in self._refined(self._estimated(placements)[:MAX_TESTED]):
             if estimate.cost_m > best.cost_m - _WORTH_M and not estimate.is_clear:
+                continue
+            if _loses_more(estimate, best):
                 continue
             tested = estimate
             if not estimate.placement.is_still:
@@ -229,6 +233,12 @@ class _Ranking:
         found = np.array([any(_is_found(scene, seat) for seat in each) for each in seats])
         trunk_m = np.where(found, _BEHIND_OWN_BACK_M, _OCCLUDED_TRUNK_M)
         return sits * trunk_m * trunk, sits * _OCCLUDED_LEGS_M * legs
+
+
+def _loses_more(one: _Tested, best: _Tested) -> bool:
+    """Whether a placement loses more of the sentence than another one that collides too little to be reported."""
+    more = one.placement.lost > best.placement.lost + _SAME_LOSS
+    return more and best.penetration_m <= REPORTED_PENETRATION_M
 
 
 def _is_found(scene: Scene, seat: tuple[float, float]) -> bool:

@@ -16,7 +16,7 @@ from mmweaver.core.boards import PRESETS
 from mmweaver.core.errors import InputError, NoRoomError
 from mmweaver.core.records import Scene
 from mmweaver.motion.language.places import Place
-from mmweaver.motion.language.plan import MotionPlan, Shape, Step, Way
+from mmweaver.motion.language.plan import FALLING_ON, MotionPlan, Shape, Step, Way
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.named_places import cells_of
 from mmweaver.motion.planning.targets import SEATS
@@ -113,20 +113,23 @@ def _ways(plan: MotionPlan, floor: FloorMap, *, may_touch: bool) -> Iterator[Opt
     all_still = on_the_spot(plan, _travels)
     plans = [(plan, ()), walks_still] + [all_still] * may_touch
     plans = [one for k, one in enumerate(plans) if not k or one[1] != plans[k - 1][1]]
-    falls = [
-        (other, (*notes, *fall_notes))
-        for style in _FALL_STYLES
+    falls = [  # first with walks that lead somewhere, last on the spot
+        [
+            (other, (*notes, *fall_notes))
+            for style in _FALL_STYLES
+            for other, fall_notes in [falling(step_plan, style)]
+            if may_touch and fall_notes
+        ]
         for step_plan, notes in (plans[0], plans[-1])[: len(plans)]
-        for other, fall_notes in [falling(step_plan, style)]
-        if may_touch and fall_notes
     ]
-    for one, notes in (*plans, *falls):
+    plans = [plans[0], *falls[0], *plans[1:], *(falls[1] if len(falls) > 1 else [])]
+    for one, notes in plans:
         for some_floor, floor_notes in floors:
             if one is not plan or some_floor is not floor:
                 yield one, some_floor, (*notes, *floor_notes)
     wide = [one for one in floors if one[0].walkable.any()]
     narrow = [(floor, (NARROW_FLOOR,)), (assumed, (ASSUMED_FLOOR, NARROW_FLOOR))]
-    for one, notes in [*plans, *falls] * may_touch:
+    for one, notes in plans * may_touch:
         for some_floor, floor_notes in wide or narrow:
             yield one, _like(some_floor, is_tight=True), (*notes, *floor_notes)
 
@@ -205,7 +208,9 @@ def falling(plan: MotionPlan, style: str) -> tuple[MotionPlan, tuple[str, ...]]:
         The changed plan, and a note per redirected fall.
     """
     steps, notes, fallen = [], [], False
-    for step in plan.steps:
+    for number, step in enumerate(plan.steps):
+        if step.style == FALLING_ON and number + 1 < len(plan.steps) and plan.steps[number + 1].style != style:
+            step = replace(step, style="")  # a stumble goes on into a fall of its own direction only
         falls_otherwise = step.lower == "fall" and step.style != style
         fallen = falls_otherwise or (fallen and step.lower in _FALLEN and step.lower != "fall")
         steps.append(replace(step, style=style) if fallen else step)

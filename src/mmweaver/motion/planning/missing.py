@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.placed_thing import FURNISHABLE
 from mmweaver.core.records import LANDMARK_KINDS, Landmark, Scene
 from mmweaver.core.seeding import stream
 from mmweaver.motion.language.lexicon import TARGETS
@@ -152,12 +153,17 @@ def _seat_note(one: Missing, scene: Scene) -> str:
 
 
 def _refusal(one: Missing, scene: Scene) -> str:
-    kind = kinds_of(one.kind)[0]
-    where = f"give its position with --landmark {kind}=X,Y (metres right of and ahead of the radar), put one there with"
-    furnish = f" --furnish {one.kind}=X,Y, or let a place stand for it with --missing stand-in"
-    if one.is_seat:
-        where = "put one there with"
-    return f"for {one.clause!r}: no {one.kind} was found in the photo; {describe_found(scene)}; {where}{furnish}"
+    kind, what = kinds_of(one.kind)[0], f"{one.kind} to sit on" if one.is_seat else one.kind
+    own = f" put one there with --furnish {one.kind}=X,Y," if one.kind in FURNISHABLE else ""
+    if not one.is_seat:
+        own = (
+            f" give its position with --landmark {kind}=X,Y (metres right of and ahead of the radar) or a class mask"
+            f" (--classes),{own}"
+        )
+    return (
+        f"for {one.clause!r}: no {what} was found in the photo; {describe_found(scene)};{own} or let a place of the"
+        " room stand for it with --missing stand-in"
+    )
 
 
 def _stand_in(one: Missing, floor: FloorMap, seed: int) -> Landmark | None:

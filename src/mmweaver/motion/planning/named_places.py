@@ -124,10 +124,9 @@ def _middles(kind: str, place: Place, scene: Scene) -> list[Float[Array, "2"]]:
         if kind in SEATS and not found:
             found = [np.asarray(seat.position_m[:2], float) for seat in scene.seats]
     if not found:
-        way_on = "" if kind == "corner" else f" give its position with --landmark {kinds_of(kind)[0]}=X,Y, or"
         what = "corner of two walls" if kind == "corner" else kind
         raise InputError(
-            f"{place.words!r}: no {what} was found in the photo; {describe_found(scene)};{way_on} say another place"
+            f"{place.words!r}: no {what} was found in the photo; {describe_found(scene)}; say another place"
         )
     return found
 

@@ -21,7 +21,6 @@ from mmweaver.motion.planning.named_places import cells_of
 from mmweaver.motion.planning.occluded_geometry import occluded_along
 from mmweaver.motion.planning.seating import Sitting, usable_seats
 from mmweaver.motion.planning.separation import is_clear_of
-from mmweaver.motion.planning.targets import check_targets
 from mmweaver.motion.planning.trajectory import NoTrajectory, Trajectory
 from mmweaver.motion.planning.trajectory_sampler import CandidateSampler, starts_seated
 
@@ -29,7 +28,7 @@ Array = np.ndarray
 MAX_TRIES, TRIES, ENOUGH = 140, 28, 10  # maximum candidates until the first, for all, and found
 LEAVES_SEATS = 2  # the attempt that abandons the room's seats, also made if none of them works
 ENOUGH_SEATED = 14  # found, of more ways to sit, if the usual ones touch something
-MAX_TRIES_IF_LOST = 90  # candidates tried for one that loses nothing of the sentence
+MAX_TRIES_IF_LOST = 60  # candidates tried for one that loses nothing of the sentence
 _SMALL_M2, MAX_TRIES_IF_SMALL = 0.5, 40  # a small floor is searched quickly
 _OCCLUDED_COST, _OCCLUDED_SITTING_COST = 4.0, 1.5  # cost of a trajectory, or seat, occluded from the camera
 _NUM_OCCLUSION_TESTS = 12  # along a trajectory
@@ -47,6 +46,7 @@ class Placement:
         assumptions: Sentences on what was assumed.
         invents_seat: Whether a stool was assumed although the room has a reachable seat.
         chair: A chair assumed to be pulled out, if any.
+        lost: Share of what the sentence asks for that the path loses (`path_facts.lost_share`).
     """
 
     path: RootPath
@@ -55,6 +55,7 @@ class Placement:
     assumptions: tuple[str, ...]
     invents_seat: bool = False
     chair: PulledChair | None = None
+    lost: float = 0.0
 
     @property
     def is_still(self) -> bool:
@@ -133,7 +134,6 @@ def place(
             step.
     """
     start_m, after, others = conditions.start_m, conditions.after, conditions.others
-    check_targets(plan, floor.scene)
     for step in plan.steps:
         if step.place is not None:
             floor.place_cells[step.place] = cells_of(step.place, floor)
@@ -214,6 +214,7 @@ def _placement(trajectory: Trajectory, plan: MotionPlan) -> Placement:
         assumptions=tuple(dict.fromkeys(trajectory.notes)),
         invents_seat=trajectory.invents_seat,
         chair=trajectory.chair,
+        lost=trajectory.lost,
     )
 
 

@@ -54,30 +54,6 @@ def goes_to_target(step: Step) -> bool:
     return (bool(step.target) and step.target not in SEATS) or (step.place is not None and step.place.is_goal)
 
 
-def check_targets(plan: MotionPlan, scene: Scene) -> None:
-    """Checks that the room has the landmarks that the steps go to or face.
-
-    Args:
-        plan: Scheduled plan.
-        scene: The room.
-
-    Raises:
-        InputError: If a landmark is missing, naming those that the room has.
-    """
-    for step in plan.steps:
-        if step.moves and not step.place and goes_to_target(step) and not _landmarks(scene, step):
-            raise InputError(
-                f"for {step.clause or step.target!r}: no {step.target} was found in the photo;"
-                f" {describe_found(scene)}; give its position with --landmark {kinds_of(step.target)[0]}=X,Y (metres"
-                " right of and ahead of the radar) or a class mask (--classes)"
-            )
-        if step.facing in TARGETS and not faced_landmarks(step, scene):
-            raise InputError(
-                f"for {step.clause!r}: no {step.facing} was found in the photo; {describe_found(scene)}; give its"
-                f" position with --landmark {kinds_of(step.facing)[0]}=X,Y, or say another side to face"
-            )
-
-
 def faced_landmarks(step: Step, scene: Scene) -> list[Landmark]:
     """The landmarks that a step's body faces, seats included.
 

@@ -327,6 +327,8 @@ def _walk_distance(
 
 
 def _say_stopped(trajectory: Trajectory, step: Step, gone_m: float) -> None:
+    if step.speed_mps and not step.seconds:
+        return  # neither a length nor a time is asked for
     trajectory.notes.append(
         f"there is room to go {gone_m:.1f} m for {step.clause!r}; after that the person"
         f" {'stays on hands and knees' if step.lower == 'crawl' else 'stands still'} until {step.end_s:.1f} s"

@@ -162,7 +162,11 @@ class Measurement:
     def _smooth(self, values: np.ndarray, seconds: float) -> np.ndarray:
         from scipy.ndimage import gaussian_filter1d
 
-        return np.asarray(gaussian_filter1d(values, seconds * self._rate_hz, axis=0, mode="nearest"))
+        width = seconds * self._rate_hz
+        edge = min(int(4 * width) + 1, len(values) - 1)
+        padding = [(edge, edge)] + [(0, 0)] * (values.ndim - 1)
+        longer = np.pad(values, padding, mode="reflect", reflect_type="odd")  # a body under way goes on at the ends
+        return np.asarray(gaussian_filter1d(longer, width, axis=0))[edge : edge + len(values)]
 
     def span(self, start_s: float, end_s: float) -> slice:
         """Samples of a span of time, at least three."""

@@ -163,7 +163,8 @@ _MAX_SOLID_SHARE = 0.6  # of a table's visible front; chests are solid below the
 _BODY_RADIUS_M, _MAX_REACH_M = 0.27, 1.1  # a body's half width, and how far from a landmark one may stand to use it
 _MIN_SPACING_M = 0.5  # between landmarks of a kind
 _BEARING_BIN_RAD = 0.02
-_MAX_GIVEN_M, _BEFORE_FRONT_M = 10.0, 0.6  # of given landmarks: farthest, and where one stands before their front
+# Of given landmarks: the farthest, where one stands before their front, and too near to a middle that is free floor.
+_MAX_GIVEN_M, _BEFORE_FRONT_M, _NEAREST_M = 10.0, 0.6, 0.45
 
 
 def find_landmarks(
@@ -223,7 +224,9 @@ def add_landmarks(scene: Scene, given: Sequence[PlacedThing | tuple[str, tuple[f
         position_m = np.array([x, y, scene.floor_z_m + 1.0])
         candidate = LandmarkCandidate(kind=kind, position_m=position_m, squares_m=np.array([[x, y]]))
         found = find_approach(candidate, scene.free_space)
-        added.append(found if one.facing_rad is None else _in_front(found, one.facing_rad))
+        is_free = float(np.hypot(*(position_m[:2] - found.approach_m))) < _NEAREST_M  # of a thing that no photo shows
+        front_rad = float(np.arctan2(-y, -x)) if is_free and one.facing_rad is None else one.facing_rad
+        added.append(found if front_rad is None else _in_front(found, front_rad))
     kinds = {one.kind for one in things}
     notes = tuple(
         f"The {one.kind} at x {one.place_m[0]:g} m, y {one.place_m[1]:g} m was given by the user, not detected."

@@ -7,6 +7,7 @@ from typing import Any
 from mmweaver.core.errors import InputError
 from mmweaver.core.pinhole import resized
 from mmweaver.core.records import CameraIntrinsics
+from mmweaver.core.safe_files.regular_files import Place
 from mmweaver.core.safe_files.safe_text import read_json
 
 # RealSense D455, colour: 1280 x 800 pixels, 90 degrees horizontally (Intel's data sheet of the D400 series). Its
@@ -80,7 +81,7 @@ def read_camera_file(path: Path) -> dict[str, float]:
     return camera_numbers(read_json(path), path)
 
 
-def camera_numbers(content: Any, path: Path) -> dict[str, float]:
+def camera_numbers(content: Any, path: Place) -> dict[str, float]:
     """Validates the content of a camera.json, see `read_camera_file`.
 
     Args:
@@ -148,7 +149,7 @@ def _check(path: Path, camera: CameraIntrinsics) -> None:
         )
 
 
-def _number(path: Path, key: str, value: Any) -> float:
+def _number(path: Place, key: str, value: Any) -> float:
     if type(value) not in (int, float) or not abs(value) < 1e300:
         raise InputError(f"{path}: {key} is {value!r}; it must be a finite number")
     return float(value)
