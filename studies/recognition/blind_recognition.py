@@ -24,7 +24,7 @@ from mmweaver.core.records import PointCloud
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
 from mmweaver.recognition.point_recordings import PointRecording, read_task_recordings, windows_of
 from mmweaver.recognition.scoring import score_recordings
-from mmweaver.recognition.task_file import RecognitionTask, read_task
+from mmweaver.recognition.task_file import CLOUDS, RecognitionTask, read_task
 from mmweaver.recognition.train_recogniser import fitted
 from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindows, generated_windows
 from studies.manifest import StudyRun, content_of
@@ -120,6 +120,7 @@ def add_task_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--recordings", type=Path, action=Reads, required=True)
     parser.add_argument("--sequences", type=Path, required=True, help="folder of generated sequences; made if missing")
     parser.add_argument("--people", type=int, default=TrainingOptions().sequences)
+    parser.add_argument("--clouds", choices=CLOUDS, help="instead of the task's")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -132,6 +133,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def task_data(options: argparse.Namespace) -> tuple[RecognitionTask, TrainingWindows, list[PointRecording]]:
     """A task with its generated windows and its recordings."""
     task = read_task(TASKS / f"{options.task}.toml")
+    task = replace(task, clouds=options.clouds or task.clouds)
     sequences = generate_sequences(SequenceRecipe.of(task), options.people, options.sequences)
     made = generated_windows(sequences, task, TrainingOptions())
     return task, made, recordings_of(options.task, options.recordings, task)
