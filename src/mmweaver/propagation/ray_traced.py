@@ -115,8 +115,8 @@ _SENTENCES = (
     " makers' documents; they are not calibrated against a recording",
     "the body is made of capsules with a wrinkled skin with a specular lobe towards the radar (reflectivity 0.14, slope"
     " 0.10); clothes are in that figure and not modelled",
-    "who stands or sits still sways, trembles and breathes by typical amounts",
-    "nothing passes through furniture, and waves do not bend around edges",
+    "who keeps still sways, trembles, breathes and has a heartbeat by typical amounts",
+    "nothing passes through furniture, and waves bend around people alone, not around edges of the room",
 )
 ASSUMPTIONS = tuple(map(UsualAssumption, _SENTENCES))
 SEVERAL_PEOPLE = (
