@@ -29,7 +29,7 @@ REQUEST_FILE = "request.toml"
 HELP_ALL = "--help-all"
 # written into request.toml even where they are the default, which may change
 ALWAYS_WRITTEN = ("radar", "frames", "seed", "points", "method", "board")
-IGNORED_IN_FILES = ("draws", "html", "strict", "log-level")  # of 0.2, which do not affect the signal
+IGNORED_IN_FILES = ("draws", "html", "log-level")  # of 0.2, which do not affect the signal
 # defaults of 0.2 that a file may name; switches were off
 OLD_DEFAULTS = {"repeat": 1, "motion-model-for": "unknown", "precision": "auto", "lighting": "", "effort": "full"}
 # Options of 0.2: their present name, possibly with a key that precedes the value; or what to do instead.
@@ -81,7 +81,6 @@ RENAMED = {
     "--keep-noise": "keep noise in Python: compress_cube(..., keep_noise=True)",
     "--lighting": "choose the light in Python: make_room(...).photo(LIGHTINGS[NAME])",
     "--precision": "a CPU takes float32, a GPU bf16",
-    "--strict": "samples that do not fit the settings are a warning in meta.json",
     "--scatterers": "leave the residual out in Python: read_cube(..., with_residual=False)",
 }
 
