@@ -1,7 +1,7 @@
 """mmweaver points: point clouds of boards and data sets become points.npz."""
 
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from mmweaver.cli.option_groups import Written
 from mmweaver.core.options import MISSING, option, options
@@ -24,12 +24,6 @@ class Options(Written):
     layout: str | None = option(
         "ti_uart, ti_replay, csv, mmfi, radhar, npz, arrays, ros or points (default: by the file itself)", "NAME"
     )
-    unit: Literal["m", "cm", "mm"] | None = option(
-        "unit of the positions (default: metres, unless most points would then be out of reach)"
-    )
-    axes: Literal["radar", "ros"] | None = option(
-        "axes of a table: x right and y away, or ROS's x ahead and y left (default: as its columns show)"
-    )
 
 
 def run(asked: Options) -> int:
@@ -46,7 +40,7 @@ def run(asked: Options) -> int:
     from mmweaver.io.point_clouds.read_points import points_kind, read_points
 
     check_output_file(asked.out, overwrite=asked.overwrite, inputs=[asked.file])
-    cloud = read_points(asked.file, asked.layout, unit=asked.unit, axes=asked.axes)
+    cloud = read_points(asked.file, asked.layout)
     with atomic_file(asked.out) as temporary:
         write_points_npz(temporary, cloud)
     summary = {

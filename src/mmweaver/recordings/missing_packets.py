@@ -35,7 +35,7 @@ def missing_packets(paths: tuple[Path, ...], config: RadarConfig) -> tuple[Gap, 
     files, frame_bytes = JoinedFiles(paths), bytes_of_frame(config)
     loop_bytes = _loop_bytes(config)
     num_frames = files.size // frame_bytes
-    if num_frames < 3:
+    if num_frames < 3 or files.size % frame_bytes == 0:  # nothing is missing from whole frames
         return ()
     heads = (_words(files, frame * frame_bytes, loop_bytes) for frame in range(num_frames))
     successive = np.array([_likeness(one, two) for one, two in pairwise(heads)])
@@ -57,7 +57,7 @@ def _gaps(files: JoinedFiles, config: RadarConfig, typical: float) -> list[Gap]:
             if packets:
                 size = packets * PACKET_BYTES
                 at = _place(files, config, frame - 1, shift, size)
-                gaps.append(Gap(at=at, num_bytes=size, unsure=2 * loop_bytes))
+                gaps.append(Gap(at=at, num_bytes=size, unsure=3 * loop_bytes))
                 shift += size
                 head = _words(files, frame * frame_bytes - shift, loop_bytes)
         if _likeness(reference, head) >= UNLIKE * typical:
@@ -95,10 +95,10 @@ def _place(files: JoinedFiles, config: RadarConfig, frame: int, shift: int, size
     for loop in range(1, config.num_loops):
         at = start + loop * loop_bytes - shift
         own, other = _words(files, at, loop_bytes), _words(files, at - size, loop_bytes)
-        gain.append(_likeness(reference, own) - _likeness(reference, other))
+        gain.append(_correlation(reference, own).real - _correlation(reference, other).real)
     # loops before the gap resemble the first at their own place, those after it at the shifted one
     score = np.concatenate([[0.0], np.cumsum(gain)])
-    return start + int(np.flatnonzero(score > score.max() - CLEARLY)[0]) * loop_bytes  # loops within the gap score 0
+    return start + int(np.flatnonzero(score > score.max() - CLEARLY)[0]) * loop_bytes
 
 
 def _loop_bytes(config: RadarConfig) -> int:
@@ -112,8 +112,22 @@ def _words(files: JoinedFiles, first: int, num_bytes: int) -> np.ndarray:
 
 
 def _likeness(one: np.ndarray, other: np.ndarray) -> float:
-    """Normalised correlation of words of the same number, without their mean."""
+    """Magnitude of the normalised correlation of words of the same number."""
+    return abs(_correlation(one, other))
+
+
+def _correlation(one: np.ndarray, other: np.ndarray) -> complex:
+    """Normalised correlation of words of the same number, without their mean; 0 for words of another number."""
     if len(one) != len(other) or not len(one):
-        return 0.0
-    a, b = one - one.mean(dtype=np.float32), other - other.mean(dtype=np.float32)
-    return float(np.dot(a, b) / max(float(np.linalg.norm(a) * np.linalg.norm(b)), 1e-30))
+        return 0j
+    a, b = (_complex(words - words.mean(dtype=np.float32)) for words in (one, other))
+    return complex(np.vdot(a, b) / max(float(np.linalg.norm(a) * np.linalg.norm(b)), 1e-30))
+
+
+def _complex(words: np.ndarray) -> np.ndarray:
+    """Words as complex numbers, so that an echo that moves between frames, which turns their phase, looks alike.
+
+    Pairs of two lanes (I I Q Q or Q Q I I); in any other order a constant mixture, which is as good for comparison.
+    """
+    pairs = words[: len(words) // 4 * 4].reshape(-1, 2, 2)
+    return pairs[:, 0] + 1j * pairs[:, 1]

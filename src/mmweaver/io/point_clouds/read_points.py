@@ -72,7 +72,7 @@ def read_points(
         raise InputError(f"unknown kind of point cloud {kind!r}; known: {', '.join(FORMATS)}")
     cloud, checks = _in_metres(FORMATS[kind].read(path), unit), ArrayChecks(path)
     if axes == "ros" and not any(ROS_NOTE in note for note in cloud.notes):
-        cloud = replace(cloud, x_m=-cloud.y_m, y_m=cloud.x_m, notes=(*cloud.notes, f"{ROS_NOTE} (--axes ros)"))
+        cloud = replace(cloud, x_m=-cloud.y_m, y_m=cloud.x_m, notes=(*cloud.notes, ROS_NOTE))
     elif axes == "radar" and any(ROS_NOTE in note for note in cloud.notes):
         cloud = replace(cloud, x_m=cloud.y_m, y_m=-cloud.x_m, notes=())
     for name in ("x_m", "y_m", "z_m"):
@@ -90,9 +90,7 @@ def _in_metres(cloud: LoggedCloud, unit: str | None) -> LoggedCloud:
         far = float(np.percentile(np.abs(cloud.xyz_m).max(axis=1), FAR_PERCENTILE)) if len(cloud.frame) else 0.0
         unit = "m" if far <= FARTHEST_M else "cm" if far <= 10 * FARTHEST_M else "mm"
         if unit != "m":
-            cloud = replace(
-                cloud, notes=(*cloud.notes, f"positions up to {far:.0f} were taken as {unit} (--unit {unit})")
-            )
+            cloud = replace(cloud, notes=(*cloud.notes, f"positions up to {far:.0f} were taken as {unit}"))
     if unit == "m":
         return cloud
     scale = UNITS_M[unit]
