@@ -19,8 +19,10 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
+from mmweaver.core.checksums import sha256_of_file
 from mmweaver.core.errors import InputError
 from mmweaver.core.optional_packages import need
+from mmweaver.core.safe_files.safe_text import parse_json, read_text
 from mmweaver.motion.language.activities import BODY, HANDS
 from mmweaver.motion.language.described_person import described_person
 from mmweaver.motion.language.lexicon import FILLERS, NUMBERS, RADAR, SEATS, TARGETS
@@ -156,9 +158,9 @@ class ModelParser:
     def _cached(self, text: str) -> dict[str, Any] | None:
         file = self._file(text)
         try:
-            found = {} if file is None else _json(file.read_text(encoding="utf-8"))
+            found = {} if file is None else _json(read_text(file, max_bytes=2 * MAX_ANSWER_BYTES))
             answer = checked(found["answer"], text)
-        except (OSError, UnicodeDecodeError, KeyError, AttributeError, InvalidAnswer):
+        except (InputError, OSError, UnicodeDecodeError, KeyError, AttributeError, InvalidAnswer):
             return None
         self.digest = str(found.get("digest", "unknown"))[:80]
         return answer
@@ -204,10 +206,10 @@ def url_parser(
         try:
             with opener.open(request, timeout=timeout_s) as response:
                 whole = _read(response, timeout_s)
-            answer = json.loads(whole)
+            answer = parse_json(whole, "the answer")
             parser.digest = str(answer.get("system_fingerprint") or "unknown")[:80]
             return str(answer["choices"][0]["message"]["content"])
-        except (OSError, ValueError, LookupError, TypeError, AttributeError, HTTPException) as error:
+        except (InputError, OSError, ValueError, LookupError, TypeError, AttributeError, HTTPException) as error:
             why = str(error)[:120] or type(error).__name__
             raise InputError(f"the language model at {base} gave no answer: {why}") from None
 
@@ -255,12 +257,9 @@ def _local_parser(folder: Path) -> ModelParser:
         made = chat([form, *messages], max_new_tokens=2048, do_sample=False, return_full_text=False)
         return str(made[0]["generated_text"])
 
-    weights = hashlib.sha256()
-    for file in sorted(folder.glob("*.safetensors")):
-        weights.update(file.read_bytes())
-    return ModelParser(
-        reply=reply, name=folder.name, digest=weights.hexdigest()[:16], source=weights.hexdigest(), cache=cache_folder()
-    )
+    weights = (sha256_of_file(file) for file in sorted(folder.glob("*.safetensors")))
+    digest = hashlib.sha256(" ".join(weights).encode()).hexdigest()
+    return ModelParser(reply=reply, name=folder.name, digest=digest[:16], source=digest, cache=cache_folder())
 
 
 class _NoRedirects(urllib.request.HTTPRedirectHandler):
@@ -288,8 +287,8 @@ def _json(answer: str) -> dict[str, Any]:
         raise InvalidAnswer("the answer is too long")
     fenced = re.fullmatch(r"\s*```(?:json)?\s*(.*?)\s*```\s*", answer, re.DOTALL)
     try:
-        found = json.loads(fenced[1] if fenced else answer)
-    except (ValueError, RecursionError):
+        found = parse_json(fenced[1] if fenced else answer, "the answer")
+    except (InputError, ValueError, RecursionError):
         raise InvalidAnswer("the answer is no JSON") from None
     if not isinstance(found, dict):
         raise InvalidAnswer("the answer is no JSON object")
