@@ -60,6 +60,7 @@ bench: $(STAMP)
 	$(BIN)/python benchmarks/studio.py
 	$(BIN)/python benchmarks/devices.py
 	$(BIN)/python benchmarks/dataset.py
+	$(BIN)/python benchmarks/dataset_store.py
 	$(BIN)/python benchmarks/radar_dataset.py
 	$(BIN)/python benchmarks/checksums.py
 	$(BIN)/python benchmarks/recordings.py
