@@ -27,6 +27,8 @@ def running_with_high_knees(act: StepContext) -> None:
         **{**MOVEMENTS["march"], "elbow_rad": 1.5},
     )
     steps_along_path(act, style, jog=True, on_spot=True)
+    for side in BOTH:
+        act.move_foot(side, 0.75 * act.controls.foot_m[:, side, 2])  # below a thigh that is level
 
 
 @posture("mountain_climbers", stands=False)
@@ -49,19 +51,20 @@ def burpees(act: StepContext) -> None:
     planked.stand()
     support_on_hands(planked, flat)
     h, spans = act.height_m, act.repeats(3.2, 2.4, 4.2)
-    down, plank, flight = flat, flat, flat
+    down, plank, flight, reach = flat, flat, flat, flat
     for span in spans:
         down = down + span.plateau(0.0, 0.8, 0.24, 0.16)
         plank = plank + span.plateau(0.2, 0.66, 0.16, 0.16)
-        flight = flight + bump((span.progress() - 0.8) / 0.17)
+        reach = reach + span.plateau(0.72, 1.0, 0.14, 0.14)
+        flight = flight + bump((span.progress() - 0.79) / 0.2)
     act.crouch(0.92 * down, lean_rad=1.35)
     act.arm((1.35, 0.15, 0.0, 0.1), down)
     feet = np.repeat(plank[:, None], 2, axis=1)
     act.controls = blend([act.controls, planked.controls], [1 - plank, plank], [1 - feet, feet])
-    act.pelvis(up=0.13 * h * flight)
-    act.arm((2.6, 0.25, 0.0, 0.2), flight)
+    act.pelvis(up=0.115 * h * flight)
+    act.arm((1.4, 0.3, 0.0, 0.4), 0.8 * reach)
     for side in BOTH:
-        act.move_foot(side, up=0.12 * h * flight)
+        act.move_foot(side, up=0.105 * h * flight)
         act.add(flight, side, foot_pitch=0.6, contact=-1)
 
 
