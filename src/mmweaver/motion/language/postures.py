@@ -379,7 +379,15 @@ RISING = {
 STILL = {"seat": "sit", "knees": "kneel", "floor": "lie", "couch": "lie_on_seat", "ground": "floor_sit"}
 _WITH_FREE_HANDS = ("sit_down", "kneel_down", "floor_sit_down")
 # Activities done lying, and on which side; "": on either.
-LYING = {"push_ups": "front", "plank": "front", "sit_ups": "back", "roll_over": "", "try_to_get_up": ""}
+LYING = {
+    "push_ups": "front",
+    "plank": "front",
+    "sit_ups": "back",
+    "mountain_climbers": "front",
+    "roll_over": "",
+    "try_to_get_up": "",
+    "lying_leg_raise": "",
+}
 _ITS_PLACE = re.compile(r"back[_ ]to[_ ]start|\b(?:position|place|spot|pose|posture|stance)\b")
 _FALLS_ON = {Way.FORWARDS: "front", Way.BACKWARDS: "back"}  # direction of a stumble -> style of the fall
 _WAYS_OF_FALLING = words_in("back backwards backward onback onbelly forward forwards front ahead")
@@ -417,6 +425,8 @@ def _transitions_to(step: Step, posture: str, before: list[Step]) -> list[Step]:
     """The step as performed from a posture, after the transitions that it needs."""
     if step.lower in ("stand_up", "kneel_up", "get_up", "floor_rise"):
         return _rising(step, posture, before)
+    if posture == "floor" and step.lower in ("raise_leg", "leg_aside") and not step.upper:
+        return [replace(step, lower="lying_leg_raise", style=_lies_on(before))]
     if posture == "seat" and step.lower in _SEATED_FORMS and not (step.upper or step.direction == Shape.SPOT):
         style = "" if step.style == "held" else step.style
         return [replace(step, lower=_SEATED_FORMS[step.lower], style=style)]

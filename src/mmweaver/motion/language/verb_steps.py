@@ -372,7 +372,9 @@ _BY_LOWER = {
     **dict.fromkeys(("lie", "lie_down", "fall", "get_up"), _floor_step),
     **dict.fromkeys(("kneel", "kneel_up"), _kneeling_step),
     "fall_off": _falling_off_step,
-    **dict.fromkeys(("toe_tap", "leg_aside", "calf_stretch", "knee_extension", "cross_legs"), _leg_step),
+    **dict.fromkeys(
+        ("toe_tap", "leg_aside", "calf_stretch", "knee_extension", "cross_legs", "lying_leg_raise"), _leg_step
+    ),
     **dict.fromkeys(("kick", "roundhouse", "side_kick", "stomp", "raise_leg", "one_leg", "lunge", "march"), _leg_step),
     "sidestep": _sideways_step,
     "lean": _leaning_step,

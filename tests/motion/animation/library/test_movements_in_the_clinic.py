@@ -52,6 +52,10 @@ COUNTED = [
     ("sits on the chair and leans forward three times", ahead("neck"), 3, (0.15, 0.5)),
     ("sits on the chair and leans back twice", lambda j: -ahead("neck")(j), 2, (0.05, 0.4)),
     ("sits on the chair and leans to the left three times", aside("neck", 1.0), 3, (0.1, 0.45)),
+    ("does three burpees", lambda j: -up("head")(j), 3, (0.8, 1.6)),
+    ("does four pull-ups", up("pelvis"), 4, (0.35, 0.7)),
+    ("lies on the side and raises the leg three times", up("left_ankle"), 3, (0.3, 0.8)),
+    ("lies on the back and raises the right leg twice", up("right_ankle"), 2, (0.4, 0.8)),
     ("stands up from the chair and sits down five times", up("pelvis"), 5, (0.3, 0.6)),
 ]
 
@@ -102,6 +106,17 @@ def test_walks_with_an_aid_are_slow(text: str, speed_mps: tuple[float, float]):
     middle = pelvis[len(pelvis) // 4 : -len(pelvis) // 4]
     speed = np.hypot(*(middle[-1] - middle[0])) / (len(middle) / RATE_HZ)
     assert speed_mps[0] < speed < speed_mps[1]
+
+
+def test_knees_get_to_the_hips_on_the_spot_and_to_the_chest_in_mountain_climbers():
+    joints = acted("runs on the spot with high knees for 4 seconds")
+    for side in ("left", "right"):
+        assert (joints[:, 0, 2] - up(f"{side}_knee")(joints)).min() < 0.2
+        assert 4 <= peaks(up(f"{side}_knee")(joints)) <= 7
+    joints = acted("does mountain climbers")
+    assert joints[:, joint("neck"), 2].max() < 0.9
+    near = np.linalg.norm(joints[:, joint("left_knee")] - joints[:, joint("spine3")], axis=1)
+    assert near.min() < near.max() - 0.15
 
 
 def test_feet_in_tandem_are_in_line_heel_at_toes():

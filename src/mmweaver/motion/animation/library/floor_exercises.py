@@ -26,13 +26,13 @@ _STRIDE_M, _SHIN = 0.35, 0.318  # of crawling; knee to ankle as a share of the h
 @posture("plank")
 def plank(act: StepContext) -> None:
     """The upper position of a push-up, held."""
-    _support_on_hands(act, np.zeros_like(act.time_s))
+    support_on_hands(act, np.zeros_like(act.time_s))
 
 
 @posture("push_ups", stands=False)
 def push_ups(act: StepContext) -> None:
     """The body stays straight from heels to head while the arms bend and extend; the root is at the feet."""
-    _support_on_hands(act, _counted_cycles(act, 0.35, 0.55, 0.8, 0.3, 1.1))
+    support_on_hands(act, _counted_cycles(act, 0.35, 0.55, 0.8, 0.3, 1.1))
 
 
 def _counted_cycles(act: StepContext, *rates_hz: float) -> PerTime:
@@ -42,8 +42,13 @@ def _counted_cycles(act: StepContext, *rates_hz: float) -> PerTime:
     return raised_cosine(2 * np.pi * rate * (np.minimum(act.time_s, end_s if act.count else np.inf) - act.start_s))
 
 
-def _support_on_hands(act: StepContext, down: PerTime) -> None:
-    """Support on hands and toes; `down` (n,) is 0 with straight arms, 1 with bent ones."""
+def support_on_hands(act: StepContext, down: PerTime) -> None:
+    """Support on hands and toes.
+
+    Args:
+        act: Context whose controls are written.
+        down: 0 with straight arms, 1 with bent ones, (n,).
+    """
     body, h, n = act.body, act.height_m, len(down)
     slope = _UP_RAD + np.minimum(act.vary(0.92, 0.05), 1.0) * down * (_DOWN_RAD - _UP_RAD)
     leg = 0.995 * (body.leg_m + body.hip_below_pelvis_m)

@@ -23,6 +23,7 @@ def sitting_down_on_floor(act: StepContext) -> None:
 def sitting_on_floor(act: StepContext) -> None:
     """Sitting still."""
     _sit_on_floor(act, np.ones_like(act.time_s))
+    act.add(act.wander(0.1, 0.3), spine_pitch=0.02, head_yaw=0.1)
 
 
 @posture("floor_rise")

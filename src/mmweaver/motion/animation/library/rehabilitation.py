@@ -72,7 +72,9 @@ def abducting_a_leg(act: StepContext) -> None:
 @posture("calf_stretch")
 def stretching_a_calf(act: StepContext) -> None:
     """A long step back with the leg that is stretched, its heel down and its knee straight, the other knee bent."""
-    h, side, held = act.height_m, act.leg_side(), act.edges(1.2, 1.2)
+    h, side = act.height_m, act.leg_side()
+    into_s = min(1.2, 0.35 * act.duration_s)
+    held = act.plateau(act.start_s, act.end_s, into_s, into_s)
     act.move_foot(side, -0.3 * h * held, 0.0, 0.03 * h * bump(held))
     act.move_foot(1 - side, 0.06 * h * held)
     act.lift_weight(side, bump(held))
@@ -135,5 +137,5 @@ def rolling_shoulders(act: StepContext) -> None:
     phase = act.phase(rate)
     for side in act.named_arms:
         act.add(on * (1 - np.cos(phase)), side, abduction=0.17, elbow=0.16)
-        act.add(on * np.sin(phase), side, flexion=-0.22)
+        act.add(on * np.sin(phase), side, flexion=-0.12)
     act.add(on * np.sin(phase), spine_pitch=-0.035)
