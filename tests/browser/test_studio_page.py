@@ -472,6 +472,8 @@ def test_a_keyboard_alone_reaches_and_does_everything(page: Any):
     page.keyboard.press("?")
     page.wait_for_selector("dialog[open] kbd")
     page.keyboard.press("Escape")
+    page.wait_for_function("!document.querySelector('dialog').open")  # closing gives the focus back
+    page.wait_for_timeout(300)
     page.locator("canvas[aria-label^='Range-Doppler']").focus()
     for _ in range(3):
         page.keyboard.press("Shift+ArrowUp")
