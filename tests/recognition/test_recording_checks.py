@@ -72,3 +72,12 @@ def test_neighbours_that_firmware_groups_are_doubted_and_so_is_that_there_are_no
     assert ["in velocity" in line for line in said] == [False, True]
     assert contradictions([alone], grouping) == []
     assert sum("grouped" in line for line in contradictions([alone], UNGROUPED)) == 2
+
+
+def test_impossible_velocities_and_missing_frames_are_reported():
+    velocity = np.tile([0.36, 0.36, 0.36, 11_666.0], 20)
+    one = recording_of(np.arange(80), velocity_mps=velocity, num_frames=400, missing=np.arange(80, 400))
+    found = contradictions([one, recording_of(np.arange(80), velocity_mps=0.36)], RADAR)
+    assert any("20 points of 1 of 2 recordings" in line and "11,666 m/s" in line for line in found)
+    assert any("320 of 480 frames" in line and "1 of 2 recordings" in line for line in found)
+    assert contradictions([recording_of(np.arange(80), velocity_mps=0.36)], RADAR) == []

@@ -75,7 +75,7 @@ def _check_missing(recordings: Sequence[PointRecording]) -> Lines:
     lost = [len(one.missing) for one in recordings]
     if (total := sum(one.num_frames for one in recordings)) and sum(lost) >= MISSING_SHARE * total:
         files = f"{np.count_nonzero(lost)} of {len(recordings)} recordings"
-        yield f"{sum(lost)} of {total} frames are missing, in {files}, the longest {max(lost)}", "missing"
+        yield f"{sum(lost)} of {total} frames are not in the log, in {files}, up to {max(lost)} of one", "missing"
 
 
 def _check_places(x_m: np.ndarray, y_m: np.ndarray) -> Lines:
