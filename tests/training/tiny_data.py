@@ -7,10 +7,11 @@ from mmweaver.core.boards import AWR1843
 from mmweaver.datasets.dataset_plan import DatasetPlan
 from mmweaver.datasets.generate_rooms import generate_dataset
 
+# plan version 3: the sequences on which the tolerances of these tests were measured
 TINY_PLAN = DatasetPlan(
     kinds=("office", "dining_room"), lightings=("day",), num_layouts=1, sequences_a_room=3, num_frames=4,
     geometry_only=True, plan_version=3,
-)  # fmt: skip  the sequences on which these tests' tolerances were measured
+)  # fmt: skip
 
 
 def tiny_data(folder: Path, *, geometry_only: bool) -> Path:
