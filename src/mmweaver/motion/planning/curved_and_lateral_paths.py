@@ -14,6 +14,7 @@ from mmweaver.motion.planning.trajectory import (
     NoTrajectory,
     Trajectory,
     face_along,
+    gait_limit_mps,
     preferred_speed_mps,
     ramps_of,
 )
