@@ -242,7 +242,7 @@ def _facing(step: Step, scene: Scene) -> Iterator[Quantity]:
 def _posture(step: Step, scene: Scene) -> Iterator[Quantity]:
     del scene
     posture = BY_KEY[step.lower].posture
-    if posture in POSTURE_OF and step.lower not in ("crawl", "roll_in_bed", "sit_up"):
+    if posture in POSTURE_OF and step.lower not in ("crawl", "roll_in_bed", "sit_up", "seated_reach"):
         names = {"seat": "seated", "knees": "kneeling", "floor": "lying"}
         asked = "|".join(names[one] for one in POSTURE_OF[posture])
 
