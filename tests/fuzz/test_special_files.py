@@ -22,7 +22,7 @@ SAMPLE = Path(__file__).resolve().parents[2] / "src" / "mmweaver" / "sample"
 ROOM = {name: str(SAMPLE / file) for name, file in
         (("--rgb", "rgb.webp"), ("--depth", "depth.png"), ("--camera", "camera.json"))}  # fmt: skip
 WEIGHTS = str(SAMPLE.parent / "weights" / "weaver.safetensors")
-WRITTEN = {"--out", "-o", "out"}
+WRITTEN = {"--out", "-o", "out", "--pictures"}
 # What a command needs besides the option that is tried.
 NEEDED: dict[str, dict[str, str | None]] = {
     "generate": {**ROOM, "--text": "a person waves", "--out": "OUT"},
@@ -35,6 +35,7 @@ NEEDED: dict[str, dict[str, str | None]] = {
     "studio": {"--port": "0"},  # whatever else listens on the usual one
     "evaluate": {"task": "zero-shot-activity"}, "motion": {"text": "a person waves"},
     "dataset": {"out": "OUT", "--rooms": "office"}, "pose": {"model": "POSE", "--points": "BIN", "--out": "OUT"},
+    "fit": {"signal": "BIN", "--radar": "awr1843", "-o": "field.safetensors"},
     "train": {"recipe": "weaver", "task": None, "--data": "DATA", "--out": "OUT"},
 }  # fmt: skip
 # Other options that an option needs (a word) or does not go with (None).

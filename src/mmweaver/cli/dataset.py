@@ -136,9 +136,9 @@ def run(asked: Options) -> int:
                 name = one.name.replace("_", "-")
                 raise InputError(f"--{name} is for data sets of rooms; leave it out of a labelled set")
         return run_activity_set(asked)
-    for name in vars(LabelledSet)["__annotations__"]:
-        if getattr(asked, name) is not None:
-            raise InputError(f"--{name.replace('_', '-')} is for labelled sets; give --activities, too")
+    for one in fields(LabelledSet):
+        if getattr(asked, one.name) != one.default:
+            raise InputError(f"--{one.name.replace('_', '-')} is for labelled sets; give --activities, too")
     return _run_rooms(asked)
 
 

@@ -31,6 +31,7 @@ EXTRAS: dict[str, dict[str, str]] = {
     "dataset": {"numcodecs": "numcodecs", "zarr": "zarr"},
     "evaluate": {"sklearn": "scikit-learn"},
     "export": {"av": "av", "foxglove": "foxglove-sdk", "rosbags": "rosbags", "xarray": "xarray", "zarr": "zarr"},
+    "hdf5": {"h5py": "h5py"},
     "mesh": {"trimesh": "trimesh"},
     "notebook": {"anywidget": "anywidget"},
     "phone": {"av": "av", "pillow_heif": "pillow-heif"},

@@ -188,10 +188,11 @@ def things_of_text(text: str) -> tuple[str, tuple[str, ...]]:
     for kind, pattern in _phrases():
         while (match := pattern.search(text)) is not None:
             found.append((match.start(), kind))
-            text = f"{text[: match.start()]}{text[match.end() :]}"
+            blank = " " * (match.end() - match.start())  # so that places stay those of the sentence
+            text = f"{text[: match.start()]}{blank}{text[match.end() :]}"
     if not found:
         return text, ()
-    return text.strip(" ,"), tuple(kind for _, kind in sorted(found))
+    return " ".join(text.split()).strip(" ,"), tuple(kind for _, kind in sorted(found))
 
 
 def _numbers(words: list[str]) -> list[float]:

@@ -38,6 +38,9 @@ def test_the_table_and_the_library_have_the_same_activities():
     assert set(POSTURES) == {activity.key for activity in BODY}
     assert set(GESTURES) == {activity.key for activity in HANDS}
 
+# sway, breathing and tremor are added to the joints of a result: tests/motion/test_physiology.py
+STILL = {"stand", "sit", "kneel", "lie", "lie_on_seat", "plank", "cross_arms", "hips"}
+
 
 @pytest.mark.parametrize("activity", [*BODY, *HANDS], ids=lambda activity: activity.key)
 def test_every_example_is_acted_out_as_a_body_can(activity, finer_times):
@@ -54,7 +57,8 @@ def test_every_example_is_acted_out_as_a_body_can(activity, finer_times):
     assert speed.max() < (8.0 if activity.key in FAST else 6.0)
     # peaks of the toes; low-passed at 12 Hz they are 45 to 58 m/s2, those of six recorded runners 70 to 110
     assert acceleration.max() < (240 if activity.key == "jog" else 160)
-    assert np.linalg.norm(np.ptp(joints - joints[:, :1], axis=0), axis=-1).max() > 0.004
+    moved_m = np.linalg.norm(np.ptp(joints - joints[:, :1], axis=0), axis=-1).max()
+    assert moved_m > 0.004 or activity.key in STILL
 
 
 @pytest.mark.parametrize(
