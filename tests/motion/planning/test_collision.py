@@ -73,10 +73,10 @@ def test_the_back_of_a_chair_that_is_pulled_out_is_left_out_with_it():
     sits = compose(plan_motion("a person sits", 1.0), bare, seed=0, range_window_m=WINDOW_M)
     scene = _before_a_board(0.0, 2.2)
     lens, depth = scene.photo.intrinsics, np.full(scene.photo.depth_m.shape, np.nan)
-    top, low = (round(lens.cy - (scene.floor_z_m + height) / 2.2 * lens.fy) for height in (0.9, 0.1))
-    for x in (-0.2, 0.2):
-        column = round(lens.cx + x / 2.2 * lens.fx)
-        depth[top:low, column - 2 : column + 3] = 2.2
+    top, low = (round(lens.cy - (scene.floor_z_m + height) / 2.1 * lens.fy) for height in (0.9, 0.1))
+    for x in (-0.16, 0.16):
+        column = round(lens.cx + x / 2.1 * lens.fx)
+        depth[top:low, column - 2 : column + 3] = 2.1
     obstacles = CollisionMap(dataclasses.replace(scene, photo=dataclasses.replace(scene.photo, depth_m=depth)))
     place = ((0.0, 2.3),)
     chair = PulledChair((0.0, 2.0), -np.pi / 2, 0.3)  # it faces the radar
