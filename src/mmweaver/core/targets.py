@@ -67,7 +67,7 @@ class Reflector:
 
 @dataclass(frozen=True, kw_only=True)
 class Thing:
-    """Something that moves but is nobody; its kinds are the rows of things.toml.
+    """A moving thing that is not a person; its kinds are the rows of things.toml.
 
     Attributes:
         kind: Name of the row.

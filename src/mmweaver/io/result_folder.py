@@ -25,7 +25,7 @@ BOARD_FILE, THINGS_FILE = "board.json", "things.npz"
 FILES = {
     "radar.npz": "the cube, complex64 (frame, range, doppler, antenna), and its axes in m, m/s and s",
     "pose.npz": "22 joints of each person at each frame, in metres, in the radar's frame",
-    THINGS_FILE: "things that move but are nobody: kind, place and velocity at each frame, in the radar's frame",
+    THINGS_FILE: "moving things other than people: kind, place and velocity at each frame, in the radar's frame",
     "points.npz": "point cloud: frame, x, y, z in metres, radial velocity in m/s, SNR in dB",
     "adc_data.bin": "raw ADC samples as a DCA1000 writes them, int16",
     "radar.json": "the radar: chirp, array and frame; --radar reads it",

@@ -184,7 +184,7 @@ class Interaction(IntEnum):
     CLUTTER = 9  # something in the room that photo and mesh do not resolve
     BODY_BODY = 10  # two people, one after the other
     TARGET = 11  # a reflector of known cross section
-    THING = 12  # something that moves but is nobody
+    THING = 12  # a moving thing that is not a person
 
 
 STATIC_KINDS = (Interaction.DIFFUSE, Interaction.SPECULAR, Interaction.EDGE)  # of first order, as a room has them

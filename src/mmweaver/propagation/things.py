@@ -1,4 +1,4 @@
-"""Things that move but are nobody, and reflectors at rest, as scatterers of one radar.
+"""Moving things other than people, and reflectors at rest, as scatterers of one radar.
 
 A thing is a few point scatterers that move by the laws of its row in core/things.toml, as functions of continuous time.
 Both methods add their paths, which the room's surfaces hide, as direct echoes by the radar equation.

@@ -29,7 +29,7 @@ WHAT_TO_DO = {
     "cfg": "name the .cfg that the board was sent",
     "columns": "check the directions of `columns`",
     "sign": 'name the column "velocity_towards" (or "velocity", where it is named so)',
-    "place": "if it is nobody (a fan, an echo), record the empty place and name it as `background`",
+    "place": "if it is not a person (a fan, an echo), record the empty place and name it as `background`",
     "damaged": "these points are left out; check the reader of the data port",
     "missing": "windows there are left out; name `num_frames` in a .npz of which no frame is missing",
 }

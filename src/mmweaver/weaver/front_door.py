@@ -220,7 +220,7 @@ class Weaver(RoomReader):
                 background, whose board is used), "typical:N", "ideal", a board.json or a `Board` (docs/board.md).
             reflectors: Each a `Reflector` of known cross section (docs/things.md).
             interferers: Each an `Interferer`, another radar.
-            things: Each a `Thing` that moves but is nobody: fan, curtain, door, cat ... (docs/things.md).
+            things: Moving things other than people, each a `Thing`: fan, curtain, door, cat ... (docs/things.md).
             radar_poses: One `RadarPose` per radar that records the scene (default: one at the camera).
 
         For several people `at`, `height_m` and `subject` are lists.

@@ -131,7 +131,7 @@ class Generation(ShownByFacts):
         stages: Duration of each stage.
         board: Board whose errors the signal has.
         further: Simultaneous signals of other radars.
-        things: Ground truth of everything that moves but is nobody.
+        things: Ground truth of moving things other than people.
     """
 
     cube: RadarCube

@@ -178,7 +178,7 @@ class Request:
         name="reflector",
     )
     things: "Sequence[Thing]" = option(
-        "something that moves but is nobody, at metres right of and ahead of the camera (default: a free place by"
+        "a moving thing that is not a person, at metres right of and ahead of the camera (default: a free place by"
         " seed), facing DEG degrees (0 towards the camera): fan, ceiling_fan, curtain, door, vacuum, cat, dog, plant,"
         " washing_machine; once more for each further one (docs/things.md)",
         "KIND[=X,Y[,DEG]]",
