@@ -7,7 +7,6 @@ import time
 import pytest
 import tqdm  # noqa: F401  (its first import takes longer than the test waits)
 
-from mmweaver.cli import progress
 from mmweaver.cli.progress import StageBar
 
 

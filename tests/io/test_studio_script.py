@@ -47,7 +47,9 @@ def read(folder: Path, text: str) -> RadarConfig:
 def test_a_script_is_the_radar_of_the_same_cfg(tmp_path: Path):
     (tmp_path / "capture.cfg").write_text(CFG)
     read(tmp_path, SCRIPT)
-    assert load_radar(f"{tmp_path / 'capture.lua'}#antennas=isk") == read_ti_cfg(tmp_path / "capture.cfg", RadarOptions(antennas=ANTENNAS["isk"]))
+    assert load_radar(f"{tmp_path / 'capture.lua'}#antennas=isk") == read_ti_cfg(
+        tmp_path / "capture.cfg", RadarOptions(antennas=ANTENNAS["isk"])
+    )
 
 
 def test_lanes_order_and_beams(tmp_path: Path):

@@ -38,6 +38,7 @@ def test_the_table_and_the_library_have_the_same_activities():
     assert set(POSTURES) == {activity.key for activity in BODY}
     assert set(GESTURES) == {activity.key for activity in HANDS}
 
+
 # sway, breathing and tremor are added to the joints of a result: tests/motion/test_physiology.py
 STILL = {"stand", "sit", "kneel", "lie", "lie_on_seat", "plank", "cross_arms", "hips"}
 
