@@ -53,6 +53,7 @@ def test_other_fields_are_fitted_too(walk: Path, tmp_path: Path, options: tuple[
     assert load(out).num_values <= 1500
 
 
+@pytest.mark.slow  # the parts: this file, tests/datasets
 def test_a_sequence_of_a_set_is_fitted(tiny_signals: Path, tmp_path: Path, capsys):
     out, words = tmp_path / "a.safetensors", ["--field", "scatterers", "--values", "20000", "--quiet"]
     assert main(["fit", str(tiny_signals), "--sequence", "1", "-o", str(out), *words]) == 0

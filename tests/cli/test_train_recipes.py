@@ -28,7 +28,7 @@ def test_activity_writes_weights_and_their_page(tiny_signals: Path, tmp_path: Pa
     assert load_into(ActivityNetwork(AWR1843), Path(summary["weights"]), recipe="activity").steps == 2
 
 
-@pytest.mark.parametrize("target", ["signal", "power"])
+@pytest.mark.parametrize("target", [pytest.param("signal", marks=pytest.mark.slow), "power"])
 def test_a_hypernetwork_writes_weights_that_generate_reads(
     tiny_geometry: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], target: str
 ):

@@ -37,6 +37,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow  # the tests below read packed rooms, too
 def test_a_packed_set_holds_the_same_in_a_file_per_room(folder: Path, tmp_path: Path):
     plain = tmp_path / "plain"
     generate_dataset(plain, replace(PLAN, packed=False), AWR1843)

@@ -19,8 +19,8 @@ from tests.faults.faulted_runs import computed_once, stopped_clocks
 from tests.trust.commands_in_children import Ended, run_at_once
 
 COMMANDS = [one.name for one in faulted_commands(Path())]
-SLOW = {"dataset", "dataset --activities", "train"}  # of `make test-slow`; `generate --texts` resumes as they do
-NAMES = [pytest.param(name, marks=[pytest.mark.slow] * (name in SLOW)) for name in COMMANDS]
+QUICK = {"compress --append", "decompress", "export", "motion", "points", "rooms"}  # all others in `make test-slow`
+NAMES = [pytest.param(name, marks=[pytest.mark.slow] * (name not in QUICK)) for name in COMMANDS]
 VARYING = ("log.jsonl", "sequences.json")  # its lines say how long they took; it names --out
 OTHERS = "precious"
 
