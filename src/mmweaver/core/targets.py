@@ -192,7 +192,7 @@ def things_of_text(text: str) -> tuple[str, tuple[str, ...]]:
             text = f"{text[: match.start()]}{blank}{text[match.end() :]}"
     if not found:
         return text, ()
-    return " ".join(text.split()).strip(" ,"), tuple(kind for _, kind in sorted(found))
+    return " ".join(text.split()).replace(" ,", ",").strip(" ,"), tuple(kind for _, kind in sorted(found))
 
 
 def _numbers(words: list[str]) -> list[float]:
