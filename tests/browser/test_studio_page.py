@@ -442,8 +442,12 @@ def test_back_and_forward_go_through_what_was_made(page: Any):
     page.wait_for_function("() => studio.state.phase === 'idle' && studio.state.shown?.name === 'a person sits down'")
 
 
-def test_a_keyboard_alone_reaches_and_does_everything(page: Any):
-    """Every control takes the focus by Tab, and shortcuts work wherever it is."""
+def test_a_keyboard_alone_reaches_and_does_everything(page: Any, browser: Any):
+    """Every control takes the focus by Tab, and shortcuts work wherever it is; on a page of its own."""
+    url, page = page.url, browser.new_page(reduced_motion="reduce")
+    page.goto(url)
+    page.wait_for_selector(READY, timeout=120_000)
+    page.wait_for_selector(IDLE, timeout=60_000)
     page.evaluate("document.activeElement.blur()")
     page.keyboard.press("/")
     assert page.evaluate("document.activeElement.className") == "sentence"
@@ -487,6 +491,7 @@ def test_a_keyboard_alone_reaches_and_does_everything(page: Any):
     page.wait_for_function("studio.player.cell !== null")
     page.keyboard.press("Escape")
     page.evaluate("studio.player.setRays(false)")
+    page.close()
 
 
 def test_theme_and_layout_are_kept(page: Any, browser: Any, address: Running):
