@@ -25,6 +25,7 @@ from mmweaver.propagation.static_paths import ALL_PATHS, Propagation, RayTracedR
 from mmweaver.signal.cube import radar_cube
 
 if TYPE_CHECKING:
+    from mmweaver.models.frame_motion import FrameMotion
     from mmweaver.models.hypernetwork_rooms import SignalRoom
     from mmweaver.models.neural_path_solver import LearnedRoom
     from mmweaver.models.scene_tensors import GivenRoom
@@ -231,15 +232,11 @@ class Learned:
         Raises:
             InputError: If the weights are not a network of mmweaver.
         """
-        from mmweaver.models.frame_motion import FrameMotion
 
         with stages("encode the room"):
             room = self._encoded.get(scene, config, background, board)
         with stages("weave the signal"):
-            at = scene.radar_pose
-            motions = [
-                FrameMotion.of(pose, config, num_frames, first_frame, Physiology.of(pose, seed), at) for pose in poses
-            ]
+            motions = _frame_motions(scene, poses, config, num_frames, first_frame, seed)
             cube, adc = room.signal(
                 motions,
                 seed=scene.radar_pose.noise_seed(seed),
@@ -267,13 +264,12 @@ class Learned:
         board: Board | None = None,
     ) -> ScenePaths:
         """The propagation paths of one frame, see `Physics.paths`."""
-        from mmweaver.models.frame_motion import FrameMotion
         from mmweaver.models.neural_path_solver import LearnedRoom
 
         room = self._encoded.get(scene, config, background, board)
         if not isinstance(room, LearnedRoom):
             raise InputError("weights of --target signal give no propagation paths; take those of a scatterer network")
-        return room.paths([FrameMotion.of(pose, config, 1, frame) for pose in poses])
+        return room.paths(_frame_motions(scene, poses, config, 1, frame, seed))
 
     def _encode(
         self, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None
@@ -314,6 +310,16 @@ def _given_room(scene: Scene, config: RadarConfig, propagation: Propagation) -> 
     from mmweaver.models.scene_tensors import GivenRoom
 
     return GivenRoom.of(scene, config, propagation=propagation)
+
+
+def _frame_motions(
+    scene: Scene, poses: tuple[PoseSequence, ...], config: RadarConfig, num_frames: int, first_frame: int, seed: int
+) -> "list[FrameMotion]":
+    """The motion of each person at the radar's frames, with the physiology of the signal's seed."""
+    from mmweaver.models.frame_motion import FrameMotion
+
+    at = scene.radar_pose
+    return [FrameMotion.of(pose, config, num_frames, first_frame, Physiology.of(pose, seed), at) for pose in poses]
 
 
 def _board_antennas(board: Board | None, config: RadarConfig) -> RadarConfig:
